@@ -11,17 +11,34 @@ namespace {
 
 constexpr double kDoubtful = 0.1;  // of the neighbour spacing, between a rough corner and what its neighbours say
 
+constexpr double kMostNoiseRatio = 2;  // a place of more noise than that, beside another one, shows no corner
+constexpr float kMostGrowth = 2;       // of squares in a line, from one to the next
+
+/// Goes on by one square, from `far` over `near`. With `farther`, as squares grow in a perspective view: with lengths a
+/// and then b, and r = b / a, the next one is b (r + 1) / (3 - r).
+cv::Point2f gone_on(cv::Point2f near, cv::Point2f far, const cv::Point2f* farther) {
+  const cv::Point2f step = near - far;
+  if (!farther) return near + step;
+  const auto before = static_cast<float>(cv::norm(far - *farther));
+  const float growth =
+      std::clamp(static_cast<float>(cv::norm(step)) / std::max(before, 1e-3f), 1 / kMostGrowth, kMostGrowth);
+  return near + step * ((growth + 1) / (3 - growth));
+}
+
 /// Where the neighbours in line with point (col, row) say that it lies: the median over up to four directions.
 /// Neighbours in `doubtful` have no say, unless there are no others.
 cv::Point2f foretold(const GridPoints& p, int cols, int rows, int col, int row, const std::vector<char>& doubtful) {
   std::array<std::vector<float>, 2> guesses;
-  for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-    const int far_col = col + 2 * dx, far_row = row + 2 * dy;
-    if (far_col < 0 || far_col >= cols || far_row < 0 || far_row >= rows) continue;
-    const auto near = static_cast<std::size_t>((row + dy) * cols + col + dx);
-    const auto far = static_cast<std::size_t>(far_row * cols + far_col);
-    if (doubtful[near] || doubtful[far]) continue;
-    const cv::Point2f guess = 2 * p[near] - p[far];
+  for (const cv::Point step : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
+    const auto in_line = [&](int steps) -> const cv::Point2f* {
+      const int x = col + steps * step.x, y = row + steps * step.y;
+      if (x < 0 || x >= cols || y < 0 || y >= rows) return nullptr;
+      const auto at = static_cast<std::size_t>(y * cols + x);
+      return doubtful[at] ? nullptr : &p[at];
+    };
+    const cv::Point2f *near = in_line(1), *far = in_line(2);
+    if (!near || !far) continue;
+    const cv::Point2f guess = gone_on(*near, *far, in_line(3));
     guesses[0].push_back(guess.x);
     guesses[1].push_back(guess.y);
   }
@@ -44,7 +61,9 @@ RefinedCorner refined(const cv::Mat& grey, cv::Point2f rough, cv::Point2f guess,
   const RefinedCorner usual = from(rough);
   if (cv::norm(rough - guess) < kDoubtful * spacing) return usual;
   const RefinedCorner other = from(guess);
-  const bool better = sure ? cv::norm(other.at - guess) < cv::norm(usual.at - guess) : other.noise_px < usual.noise_px;
+  const bool better = sure ? cv::norm(other.at - guess) < cv::norm(usual.at - guess) &&
+                                 other.noise_px < kMostNoiseRatio * usual.noise_px
+                           : other.noise_px < usual.noise_px;
   return better ? other : usual;
 }
 

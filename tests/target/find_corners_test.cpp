@@ -81,6 +81,21 @@ TEST(RefineGrid, MendsGuessesSideBySide) {
     EXPECT_LT(std::hypot(corners[i].at.x - view.pixels[i].x(), corners[i].at.y - view.pixels[i].y()), 0.2) << i;
 }
 
+// Close up, with a wide lens, a square may be larger by half than the one beside it.
+TEST(RefineGrid, LeavesCornersOfCloseViewsWhereTheyAre) {
+  const Board board = parse_board("chessboard:3x9:0.025");
+  Pose T_camera_board = Pose::Identity();
+  T_camera_board.translate(Eigen::Vector3d(0, 0, 0.14));
+  T_camera_board.rotate(Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 0.1, 0).normalized()));
+  T_camera_board.translate(Eigen::Vector3d(-0.025, -0.1, 0));
+  const DrawnView view = draw_board_at(board, 300, 900, T_camera_board);
+  GridPoints rough;
+  for (const Eigen::Vector2d& p : view.pixels) rough.emplace_back(float(p.x()), float(p.y()));
+  const auto corners = refine_grid(view.grey, rough, 3, 9);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    EXPECT_LT(std::hypot(corners[i].at.x - view.pixels[i].x(), corners[i].at.y - view.pixels[i].y()), 0.3) << i;
+}
+
 TEST(FindCorners, TiltAndTurnSayHowTheBoardLies) {
   const Board board = parse_board("chessboard:9x6:0.025");
   BoardFinder finder(board);
