@@ -15,6 +15,8 @@
 namespace foresight {
 namespace {
 
+constexpr double kSizeDoubted = 3;  // times the doubt about the board's size before the images
+
 constexpr std::size_t kFewestViews = 5, kFewViews = 10;
 constexpr double kClearly = 0.7;    // of two mounts or orders of corners, the better one's misfit over the other's
 constexpr double kContradicts = 8;  // a robot pose this many times the median correction off is wrong
@@ -239,6 +241,9 @@ void fill(const HandEyeState& state, const HandEyeCovariance& covariance, HandEy
   summary.joint_offset_sigma = covariance.joint_offset_sigma;
   summary.board_scale = state.board_scale;
   summary.board_scale_sigma = covariance.board_scale_sigma;
+  if (std::abs(state.board_scale - 1) > kSizeDoubted * state.board_sigma && state.board_sigma > 0)
+    summary.notes.push_back("by the robot, the board has " + readable(state.board_scale, 3) +
+                            " times the size that is stated: correct it in --board");
   summary.sigma_px = state.sigma_px;
   summary.sigma_robot_rad = state.sigma_rad;
   summary.sigma_robot_m = state.sigma_m;

@@ -10,6 +10,7 @@ constexpr double kFitsInstead = 0.25;  // of the misfit
 // How far the flange moves over how far camera and board move: its lever arms allow some tens, a unit takes thousands.
 constexpr double kOtherUnit = 100;
 constexpr double kTurnsOnly = 1e-3;  // metres: a robot that moved less may have turned its wrist only
+constexpr double kOtherSize = 0.1;   // of the board: less, the solver finds by itself
 
 double spread(const std::vector<Pose>& poses) {
   std::vector<double> x, y, z, off;
@@ -55,6 +56,46 @@ std::string instead(double misfit_m, double other_m) {
   return readable(1e3 * other_m, 1) + " mm of misfit instead of " + readable(1e3 * misfit_m, 1) + " mm";
 }
 
+/// True over stated size of the board, as the robot measures it: with the turns of `start`, which do not depend on it,
+/// F Y = X B is linear in the shifts of X and Y and in the size.
+double size_by_robot(const HandEyeStart& start, std::span<const RobotPose> poses,
+                     std::span<const Pose> T_camera_board) {
+  const auto rows = 3 * static_cast<Eigen::Index>(poses.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 7> A(rows, 7);
+  Eigen::VectorXd b(rows);
+  for (std::size_t v = 0; v < poses.size(); ++v) {
+    const Pose& T = poses[v].T_base_flange;
+    const Pose F = start.mount == CameraMount::moving ? T.inverse() : T;
+    const auto row = 3 * static_cast<Eigen::Index>(v);
+    A.middleRows<3>(row) << F.linear(), -Eigen::Matrix3d::Identity(),
+        -start.X.linear() * T_camera_board[v].translation();
+    b.segment<3>(row) = -F.translation();
+  }
+  return A.colPivHouseholderQr().solve(b)[6];
+}
+
+std::vector<Pose> with_size(std::span<const Pose> poses, double size) {
+  std::vector<Pose> out(poses.begin(), poses.end());
+  for (Pose& pose : out) pose.translation() *= size;
+  return out;
+}
+
+void require_size(const HandEyeStart& start, std::span<const RobotPose> poses, std::span<const Pose> T_camera_board,
+                  std::span<const Pose> symmetries) {
+  std::vector<Pose> turned;
+  for (std::size_t v = 0; v < T_camera_board.size(); ++v)
+    turned.push_back(T_camera_board[v] * symmetries[static_cast<std::size_t>(start.turned[v])]);
+  const double size = size_by_robot(start, poses, turned);
+  if (!(size > 0) || std::abs(size - 1) < kOtherSize) return;
+  const double m =
+      start_hand_eye(start.mount, poses, with_size(T_camera_board, size), with_size(symmetries, size)).misfit_m;
+  if (m < kFitsInstead * start.misfit_m)
+    throw InputError("--board",
+                     "by the robot's motion it has " + readable(size, 3) +
+                         " times the size that is stated: " + instead(start.misfit_m, m),
+                     "measure its squares (or tags), and correct the size in --board");
+}
+
 }  // namespace
 
 void require_meant(const HandEyeStart& start, bool forced, std::span<const RobotPose> poses,
@@ -82,6 +123,7 @@ void require_meant(const HandEyeStart& start, bool forced, std::span<const Robot
   if (const double m = read_as(transposed); m < kFitsInstead * start.misfit_m)
     throw InputError("--poses", "the rotations seem to be transposed: " + instead(start.misfit_m, m),
                      "write matrices row by row, and quaternions of the turn from base to flange");
+  require_size(start, poses, T_camera_board, symmetries);
 }
 
 }  // namespace foresight

@@ -186,6 +186,18 @@ TEST(HandEye, NamesTheOtherUnit) {
   EXPECT_THAT(input_error([&] { solve_hand_eye(rig.data, quick()); }), HasSubstr("--board"));
 }
 
+TEST(HandEye, NamesABoardOfAnotherSize) {
+  Random random(14);
+  for (const CameraMount mount : {CameraMount::fixed, CameraMount::moving}) {
+    HandEyeRig rig = make_rig(random, {.mount = mount});
+    for (Eigen::Vector3d& p : rig.data.corners.p_board) p *= 1.05;
+    EXPECT_THAT(solve_hand_eye(rig.data, quick()).notes, testing::Contains(HasSubstr("the board has 0.95")));
+    for (Eigen::Vector3d& p : rig.data.corners.p_board) p *= 1.5 / 1.05;
+    EXPECT_THAT(input_error([&] { solve_hand_eye(rig.data, quick()); }),
+                AllOf(HasSubstr("--board"), HasSubstr("it has 0.66"), HasSubstr("measure")));
+  }
+}
+
 // Two of 16 poses are 8 times as noisy: too little to be thrown out by name, too much for a normal noise.
 TEST(HandEye, WildRobotPosesCountLess) {
   Random random(13);
