@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -60,7 +61,17 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const auto option = std::ranges::find_if(unknown, [](const std::string& word) { return word.starts_with("--"); });
   if (option != unknown.end() && dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
     return no_such("option", "--", option->substr(2, option->find('=') - 2), options_of(*command), help);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return "not expected: " + joined(unknown) + "; " + help;
   return fault_of(error) + "; " + help;
+}
+
+/// Numbers such as -.6 as -0.6: CLI11 takes them for options.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv, argv + argc);
+  for (std::string& word : words)
+    if (word.size() > 2 && word.starts_with("-.") && std::isdigit(static_cast<unsigned char>(word[2])))
+      word.insert(1, "0");
+  return words;
 }
 
 template <typename T>
@@ -286,7 +297,10 @@ CommandLine read_command_line(int argc, char** argv, const std::string& help, co
   define(root);
   root.require_roles();
   try {
-    app.parse(argc, argv);
+    const std::vector<std::string> words = words_of(argc, argv);
+    std::vector<const char*> pointers;
+    for (const std::string& word : words) pointers.push_back(word.c_str());
+    app.parse(argc, pointers.data());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return {app.exit(error), {}};
     std::cerr << "foresight: " << explain(app, error) << "\n";
