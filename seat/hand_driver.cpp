@@ -235,7 +235,14 @@ std::vector<SeatLine> HandDriver::lines() const {
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> HandDriver::keys() {
+DrivenParts driven_parts(const Rig& rig) {
+  const auto has = [&](JointGroup group) {
+    return std::ranges::find(rig.joints, group, &RigJoint::group) != rig.joints.end();
+  };
+  return {has(JointGroup::gripper), has(JointGroup::pan_tilt)};
+}
+
+std::vector<std::pair<std::string, std::string>> HandDriver::keys(const DrivenParts& parts) {
   const auto printed = [](std::initializer_list<HandKey> keys) {
     std::string out;
     for (const HandKey key : keys)
@@ -243,17 +250,19 @@ std::vector<std::pair<std::string, std::string>> HandDriver::keys() {
     return out;
   };
   using enum HandKey;
-  return {{printed({deadman}) + "; + " + printed({to_start}), "held: the robot moves; it goes to its start"},
-          {"left button", "of the mouse, held: the robot moves, too"},
-          {printed({slow}), "held: slowly"},
-          {printed({forward, left, back, right, up, down}), "the tool: forward, left, back, right, up, down"},
-          {printed({pitch_down, yaw_left, pitch_up, yaw_right, roll_left, roll_right}), "it turns"},
-          {"mouse, wheel", "with its left button: the tool goes right, up; forward"},
-          {"right button", "of the mouse, held with the left one: it turns"},
-          {"arrows", "the camera"},
-          {printed({gripper_close, gripper_open}), "gripper closes, opens"},
-          {printed({joint_mode}) + ", 1 .. 0, - =", "single joints, which one, to and fro"},
-          {printed({recentre, home_view}), "forward is where you look; the view as it began"}};
+  std::vector<std::pair<std::string, std::string>> out = {
+      {printed({deadman}) + "; + " + printed({to_start}), "held: the robot moves; it goes to its start"},
+      {"left button", "of the mouse, held: the robot moves, too"},
+      {printed({slow}), "held: slowly"},
+      {printed({forward, left, back, right, up, down}), "the tool: forward, left, back, right, up, down"},
+      {printed({pitch_down, yaw_left, pitch_up, yaw_right, roll_left, roll_right}), "it turns"},
+      {"mouse, wheel", "with its left button: the tool goes right, up; forward"},
+      {"right button", "of the mouse, held with the left one: it turns"}};
+  if (parts.head) out.emplace_back("arrows", "the camera");
+  if (parts.gripper) out.emplace_back(printed({gripper_close, gripper_open}), "gripper closes, opens");
+  out.emplace_back(printed({joint_mode}) + ", 1 .. 0, - =", "single joints, which one, to and fro");
+  out.emplace_back(printed({recentre, home_view}), "forward is where you look; the view as it began");
+  return out;
 }
 
 }  // namespace foresight

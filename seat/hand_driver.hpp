@@ -18,6 +18,12 @@
 namespace foresight {
 
 /// tick() in the seat's thread, all else in the window's.
+/// What a rig has beside its arm.
+struct DrivenParts {
+  bool gripper = true, head = true;
+};
+DrivenParts driven_parts(const Rig& rig);
+
 class HandDriver final : public SeatDriver {
  public:
   /// Keyboard and mouse, and `devices`: whichever has its switch held drives, and feels what the tool leans on if it
@@ -52,8 +58,8 @@ class HandDriver final : public SeatDriver {
   /// From the last event of keyboard or mouse until it was in a set-point; nothing before the first.
   std::optional<Duration> input_took() const;
   const HandOptions& options() const { return options_; }
-  /// Of keyboard and mouse.
-  static std::vector<std::pair<std::string, std::string>> keys();
+  /// Of keyboard and mouse, for what there is to drive.
+  static std::vector<std::pair<std::string, std::string>> keys(const DrivenParts& parts);
 
   SeatWish tick(const SeatView& view) override;
 

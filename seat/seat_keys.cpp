@@ -7,8 +7,6 @@
 #include <initializer_list>
 #include <iterator>
 
-#include "seat/hand_driver.hpp"
-
 namespace foresight {
 namespace {
 
@@ -66,9 +64,9 @@ std::optional<SeatKey> seat_key(int glfw_code) noexcept {
 }
 
 std::vector<std::pair<std::string, std::string>> key_words(
-    const std::vector<std::pair<std::string, std::string>>& device) {
+    const std::vector<std::pair<std::string, std::string>>& device, const DrivenParts& parts) {
   using enum SeatKey;
-  std::vector<std::pair<std::string, std::string>> out = HandDriver::keys();
+  std::vector<std::pair<std::string, std::string>> out = HandDriver::keys(parts);
   out.insert(out.begin(), {{all_of({stop}), "stop at once"},
                            {all_of({enable, home, reset, set_up}), "enable, home, reset, configure drives anew"}});
   out.insert(out.end(), device.begin(), device.end());

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "seat/hand_driver.hpp"
+
 namespace foresight {
 
 enum class SeatKey : std::uint8_t {
@@ -47,8 +49,8 @@ std::optional<SeatKey> seat_key(int glfw_code) noexcept;
 
 /// For the display: each key, the hand's too, and what it does. A small window shows the first ones first: what
 /// stops and drives the robot. `device`: likewise, of the device that is used beside keyboard and mouse (keys_of(),
-/// input/open_tracker.hpp).
+/// input/open_tracker.hpp). Keys that drive what the rig has not are left out.
 std::vector<std::pair<std::string, std::string>> key_words(
-    const std::vector<std::pair<std::string, std::string>>& device = {});
+    const std::vector<std::pair<std::string, std::string>>& device = {}, const DrivenParts& parts = {});
 
 }  // namespace foresight

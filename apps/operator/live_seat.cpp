@@ -153,7 +153,7 @@ class LiveSeat {
     out.font_scale = options_.font_scale;
     out.pacer = &pacer_;
     out.trust = &trust_;
-    out.keys = key_words(keys_of(options_.device));
+    out.keys = key_words(keys_of(options_.device), driven_parts(rig_));
     out.input = [this](const gl::WindowInput& input) { take(input); };
     out.log = say;
     out.more_lines = [this] {

@@ -1,6 +1,7 @@
 // What a key of the window does is told, and is one thing.
 #include "seat/seat_keys.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,6 +36,17 @@ TEST(SeatKeys, TheMouseAndTheDeviceInUseAreToldToo) {
   for (const char* device : {"gamepad", "gamepad:1"}) EXPECT_TRUE(is_told("right shoulder", device));
   EXPECT_TRUE(is_told("cap", "spacemouse"));
   EXPECT_EQ(key_words(keys_of("a.csv")).size(), key_words().size());
+}
+
+TEST(SeatKeys, OfWhatTheRigLacksAreNotTold) {
+  const auto told = [](const DrivenParts& parts) {
+    std::string all;
+    for (const auto& [keys, does] : key_words({}, parts)) all += does + "\n";
+    return all;
+  };
+  EXPECT_THAT(told({}), testing::AllOf(testing::HasSubstr("the camera"), testing::HasSubstr("gripper closes")));
+  EXPECT_THAT(told({.gripper = false, .head = false}),
+              testing::Not(testing::AnyOf(testing::HasSubstr("the camera"), testing::HasSubstr("gripper"))));
 }
 
 TEST(SeatKeys, EachIsTold) {
