@@ -17,13 +17,13 @@
 
 namespace foresight {
 
-/// tick() in the seat's thread, all else in the window's.
 /// What a rig has beside its arm.
 struct DrivenParts {
   bool gripper = true, head = true;
 };
 DrivenParts driven_parts(const Rig& rig);
 
+/// tick() in the seat's thread, all else in the window's.
 class HandDriver final : public SeatDriver {
  public:
   /// Keyboard and mouse, and `devices`: whichever has its switch held drives, and feels what the tool leans on if it

@@ -15,9 +15,8 @@
 namespace foresight {
 namespace {
 
-constexpr double kSizeDoubted = 3;  // times the doubt about the board's size before the images
-
 constexpr std::size_t kFewestViews = 5, kFewViews = 10;
+constexpr double kSizeDoubted = 3;  // times the doubt about the board's size before the images
 constexpr double kClearly = 0.7;    // of two mounts or orders of corners, the better one's misfit over the other's
 constexpr double kContradicts = 8;  // a robot pose this many times the median correction off is wrong
 constexpr double kWildPose = 22.5;  // squared, of six coordinates: a normal one in a thousand lies beyond
