@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
@@ -18,9 +19,12 @@ constexpr double kStartPx = 4;            // a tag that is farther off from a vi
 constexpr double kStrange = 0.3;          // share of rejected corners above which the map cannot be right
 constexpr double kWorstCornerPx = 3;      // of a found corner: beyond it, the map is another one
 constexpr double kLargestLeftOut = 0.01;  // of views left out, of the image's width
-constexpr double kFirstCornerPx = 1;      // both noises before anything is known
-constexpr double kFirstShaft = 2e-3;      // rad
-constexpr double kLeastShaft = 2e-5;      // rad, a few counts of a good encoder
+constexpr int kSeenOften = 3;             // pictures of a tag, from which on its place in the map is judged
+// All tags larger or smaller than the map has them, by both: a camera's response moves corners by half a pixel.
+constexpr double kOtherTagSize = 0.03, kOtherTagPx = 0.6;
+constexpr double kFirstCornerPx = 1;  // both noises before anything is known
+constexpr double kFirstShaft = 2e-3;  // rad
+constexpr double kLeastShaft = 2e-5;  // rad, a few counts of a good encoder
 
 /// The left camera from one view's tags in one camera, or nothing.
 std::optional<Pose> view_pose(const PanTiltView& view, const CalibratedCameras& cameras, int camera) {
@@ -171,8 +175,52 @@ PanTiltTagState solve_state(const std::vector<PanTiltView>& views, const Calibra
                     " corners are not where map and head would have them"
               : "the corners are " + readable(state.corner_px, 1) + " px from where map and head would have them"),
         "check the order of the corners in the map (lower left, lower right, upper right, upper left of "
-        "the print), and that angles and pictures belong together");
+        "the print), that it is in metres, and that angles and pictures belong together");
   return state;
+}
+
+/// Tags that most of their pictures do not show where the map has them.
+void name_moved_tags(const std::vector<PanTiltView>& views, const PanTiltTagState& state, PanTiltTagSummary& summary) {
+  struct Count {
+    int seen = 0, left_out = 0;
+  };
+  std::map<int, Count> counts;
+  for (std::size_t k = 0; k < views.size(); ++k)
+    for (std::size_t i = 0; i < views[k].tags.size(); ++i) {
+      Count& count = counts[views[k].tags[i].id];
+      ++count.seen, count.left_out += state.left_out[k][i] ? 1 : 0;
+    }
+  for (const auto& [id, count] : counts)
+    if (count.seen >= kSeenOften && 2 * count.left_out > count.seen)
+      summary.notes.push_back("tag " + std::to_string(id) + " does not stand where the map has it (left out in " +
+                              std::to_string(count.left_out) + " of " + std::to_string(count.seen) +
+                              " pictures): measure it anew, or take it out of --tags");
+}
+
+/// How large the tags that count are, over what the map says.
+void judge_size_of_tags(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
+                        const PanTiltTagState& state, PanTiltTagSummary& summary) {
+  std::vector<double> sizes, off_px;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const auto predicted = predicted_corners(cameras, fitted_left(state, views[k], k), views[k]);
+    for (std::size_t i = 0; i < views[k].tags.size(); ++i) {
+      const auto first = predicted.begin() + 4 * static_cast<std::ptrdiff_t>(i);
+      if (state.left_out[k][i] || std::count(first, first + 4, std::nullopt) > 0) continue;
+      Eigen::Matrix<double, 2, 4> seen, mapped;
+      for (int c = 0; c < 4; ++c)
+        seen.col(c) = views[k].tags[i].pixels[static_cast<std::size_t>(c)], mapped.col(c) = **(first + c);
+      seen.colwise() -= seen.rowwise().mean().eval();
+      mapped.colwise() -= mapped.rowwise().mean().eval();
+      sizes.push_back(seen.norm() / mapped.norm());
+      off_px.push_back((seen.norm() - mapped.norm()) / 2);  // root mean square of four
+    }
+  }
+  if (sizes.empty()) return;
+  const double size = median(std::move(sizes));
+  if (std::abs(size - 1) > kOtherTagSize && std::abs(median(std::move(off_px))) > kOtherTagPx)
+    summary.notes.push_back("the tags look " + readable(size, 3) +
+                            " times as large as the map has them: measure the side of their black squares, and correct "
+                            "--tags");
 }
 
 void score_left_out(const std::vector<PanTiltView>& views, const CalibratedCameras& cameras,
@@ -276,6 +324,8 @@ PanTiltTagSummary solve_pan_tilt_tags(const std::vector<PanTiltView>& given, con
     all.insert(all.end(), errors.begin(), errors.end());
   }
   summary.in_sample_px = root_mean_square(all);
+  name_moved_tags(views, state, summary);
+  judge_size_of_tags(views, cameras, state, summary);
   if (options.score) score_left_out(views, cameras, state, summary);
   judge_sigmas(summary.names, summary.sigmas, summary.verdict);
   if (const double limit = kLargestLeftOut * cameras.left().width; summary.loo_px > limit)

@@ -99,6 +99,7 @@ TEST(PanTiltTags, PredictsUnseenViewsFromNoisyOnes) {
   EXPECT_GT(found.loo_px, found.in_sample_px);
   EXPECT_LT(found.loo_px, 0.5);
   EXPECT_EQ(found.sigmas.size(), found.names.size());
+  EXPECT_THAT(found.notes, testing::Not(testing::Contains(HasSubstr("tag"))));
 }
 
 TEST(PanTiltTags, MovedAndMisreadTagsAreLeftOut) {
@@ -117,6 +118,20 @@ TEST(PanTiltTags, MovedAndMisreadTagsAreLeftOut) {
   EXPECT_GE(found.rejected_points, moved);
   EXPECT_LE(found.rejected_points, moved + 24);
   EXPECT_LT(ring.unseen_px(random, found.model), 0.15);
+  EXPECT_THAT(found.notes, testing::UnorderedElementsAre(HasSubstr("tag 3 does not stand where the map has it"),
+                                                         HasSubstr("tag 38 does not"), HasSubstr("gains")));
+}
+
+TEST(PanTiltTags, SaysThatTagsAreLargerThanTheMapHasThem) {
+  Random random(56);
+  const TagRing ring(random);
+  std::vector<PanTiltView> views = ring.views(random, 20, 0.15, 1e-4);
+  for (PanTiltView& view : views)
+    for (SeenTag& tag : view.tags) {
+      const Eigen::Vector3d middle = (tag.corners[0] + tag.corners[2]) / 2;
+      for (Eigen::Vector3d& corner : tag.corners) corner = middle + 0.9 * (corner - middle);
+    }
+  EXPECT_THAT(solve_pan_tilt_tags(views, ring.cameras, {}).notes, testing::Contains(HasSubstr("the tags look 1.1")));
 }
 
 TEST(PanTiltTags, FindsTheClocksOffsetOfAMovingHead) {
