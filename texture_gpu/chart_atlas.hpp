@@ -23,6 +23,11 @@ namespace foresight {
 struct PageRecord {
   std::uint32_t chart, xy, height_slot, unused = 0;
   std::array<std::array<std::uint32_t, 2>, 4> tiles{};  ///< packed(TilePlane); turned away from all: no surface
+
+  /// Whether it is one of those that are looked after at image number `image`, when each is at every `images`-th.
+  bool has_turn(std::int64_t image, std::uint64_t images) const {
+    return (chart + xy + (xy >> 16) + static_cast<std::uint64_t>(image)) % images == 0;
+  }
 };
 
 /// A page to be written, as jobs.glsl reads it.
@@ -49,7 +54,7 @@ struct AtlasPage {
   std::uint32_t height = atlas::kNoSlot;
   std::array<TilePlane, 4> tiles{};
   std::uint16_t covered = 0;    ///< texels on the surface
-  std::uint8_t held = 0;        ///< a bit for each tile: it has colours
+  std::uint8_t held = 0;        ///< a bit for each tile: some texel was seen, or has been carried over
   std::int64_t last_seen = -1;  ///< image number
   /// Seen by each image from this one to `last_seen`; of use where images are extracted later than they are seen.
   std::int64_t seen_since = -1;
@@ -130,8 +135,10 @@ class ChartAtlas {
 
   /// Image number `image` sees these pages of the last plan(), whether or not they are written now.
   void note_seen(std::span<const std::uint32_t> masks, std::int64_t image);
-  /// Of these masks of the last plan(), what has no colours yet.
-  std::vector<std::uint32_t> not_held(std::span<const std::uint32_t> masks) const;
+  /// Of these masks of the last plan(), what has no colours yet. Tiles that were written, but of which no texel was
+  /// seen for certain, have to wait for their turn among TextureOptions::images_to_rewrite images, unless the chart has
+  /// no colours at all.
+  std::vector<std::uint32_t> not_held(std::span<const std::uint32_t> masks, std::int64_t image) const;
   /// Of these masks, what image number `image` may tell something about: not what has its colours from it, or from one
   /// of the few before it that showed nothing new, but for those before image `since`.
   std::vector<std::uint32_t> stale(std::span<const std::uint32_t> masks, std::int64_t image, std::int64_t since) const;

@@ -15,6 +15,13 @@ std::uint32_t tiles_of(std::uint32_t mask) {
   return tiles;
 }
 
+std::uint32_t written_tiles(const AtlasPage& page) {
+  std::uint32_t tiles = 0;
+  for (unsigned tile = 0; tile < 4; ++tile)
+    if (page.tile_from[tile] >= 0) tiles |= 1u << tile;
+  return tiles;
+}
+
 /// The mask of these tiles, for all cameras.
 std::uint32_t of_tiles(std::uint32_t tiles) {
   std::uint32_t mask = 0;
@@ -39,13 +46,18 @@ void ChartAtlas::note_seen(std::span<const std::uint32_t> masks, std::int64_t im
   }
 }
 
-std::vector<std::uint32_t> ChartAtlas::not_held(std::span<const std::uint32_t> masks) const {
+std::vector<std::uint32_t> ChartAtlas::not_held(std::span<const std::uint32_t> masks, std::int64_t image) const {
+  const auto period = static_cast<std::uint64_t>(std::max(1, options_.images_to_rewrite));
   std::vector<std::uint32_t> out(masks.begin(), masks.end());
+  bool has_colours = false;  // of the record's chart
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const AtlasChart& chart = charts_[records_[i].chart];
-    const int page = page_index(records_[i]);
-    const bool carried_over = needs_relevel(chart, page);
-    out[i] &= ~of_tiles(carried_over ? 0xfu : chart.page[static_cast<std::size_t>(page)].held);
+    if (i == 0 || records_[i].chart != records_[i - 1].chart)
+      has_colours = std::ranges::any_of(chart.page, [](const AtlasPage& page) { return page.held != 0; });
+    const AtlasPage& page = page_of(records_[i]);
+    const bool waits = has_colours && !records_[i].has_turn(image, period);
+    const bool carried_over = needs_relevel(chart, page_index(records_[i]));
+    out[i] &= ~of_tiles(carried_over ? 0xfu : page.held | (waits ? written_tiles(page) : 0u));
   }
   return out;
 }
@@ -57,7 +69,7 @@ std::vector<std::uint32_t> ChartAtlas::stale(std::span<const std::uint32_t> mask
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const AtlasPage& page = page_of(records_[i]);
     for (unsigned tile = 0; tile < 4; ++tile) {
-      const bool settled = page.settled >> tile & 1u;
+      const bool settled = (page.settled & page.held) >> tile & 1u;
       if (page.tile_from[tile] >= (settled ? oldest : image)) out[i] &= ~of_tiles(1u << tile);
     }
   }
@@ -91,6 +103,7 @@ void ChartAtlas::note_holes(const Allocation& done, std::span<const std::uint32_
     for (unsigned tile = 0; tile < 4; ++tile)
       if (holes[4 * i + tile] & 4u) with_news |= 1u << tile;
     page.settled = static_cast<std::uint8_t>((page.settled & ~tiles) | (tiles & ~with_news));
+    page.held = static_cast<std::uint8_t>(page.held | (tiles & with_news));
   }
 }
 
@@ -109,7 +122,7 @@ float ChartAtlas::worse_for(const AtlasPage& page) const {
 
 void ChartAtlas::note_written(AtlasPage& page, std::uint32_t mask, std::int64_t image, bool carried_over) {
   const std::uint32_t tiles = tiles_of(mask);
-  page.held = static_cast<std::uint8_t>(carried_over ? 0xfu : page.held | tiles);
+  if (carried_over) page.held = 0xf;
   if (!mask) return;
   page.written = image;
   for (unsigned tile = 0; tile < 4; ++tile)

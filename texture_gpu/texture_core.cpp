@@ -328,13 +328,11 @@ TextureCore::Masks TextureCore::needed() {
   owed_ = options_.only_what_is_needed && looked_up_;
   if (!owed_) return seen_;
   atlas_.note_seen(seen_, image_);
-  Masks out = atlas_.not_held(seen_);
+  Masks out = atlas_.not_held(seen_, image_);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const PageRecord& page = records_[i];
-    const std::uint64_t turn = page.chart + page.xy + (page.xy >> 16) + static_cast<std::uint64_t>(image_);
     // A part of them with each image: all at once would take twice the room.
-    const bool in_old_light = atlas_.page_of(page).written < light_changed_;
-    if (turn % (in_old_light ? kImagesToRelight : kImagesToRefresh) == 0) out[i] = seen_[i];
+    const bool in_old_light = atlas_.page_of(records_[i]).written < light_changed_;
+    if (records_[i].has_turn(image_, in_old_light ? kImagesToRelight : kImagesToRefresh)) out[i] = seen_[i];
   }
   if (newest_.images.size() < 2) return out;
   // Views look the left image up only.

@@ -443,18 +443,52 @@ TEST(ChartAtlas, ACopiedResolutionComesFromThePublishedOne) {
   }
 }
 
+constexpr std::uint32_t kUnseen = 3, kNews = 4;  // holes.glsl
+
+// A pixel may see a tile and no texel of it for certain: beside silhouettes, or of parts a few pixels wide.
+TEST(ChartAtlas, TilesOfWhichNothingWasSeenHaveNoColours) {
+  Atlas atlas;
+  const auto written = [&](std::int64_t image, std::uint32_t holes_of_first, std::uint32_t holes) {
+    const std::vector<std::uint32_t> all(atlas->plan(atlas.view(usual_view())).size(), 0x55);
+    const auto out = atlas->allocate(all, image);
+    std::vector<std::uint32_t> found(4 * out.jobs.size(), holes);
+    found[0] = holes_of_first;
+    atlas->note_holes(out, found);
+    atlas->commit();
+    atlas->give_back_colours(out.retired);
+    return all;
+  };
+  const std::vector<std::uint32_t> all = written(0, kUnseen, kUnseen);
+  EXPECT_EQ(atlas->not_held(all, 1), all) << "charts without any colours are asked for with each image";
+  EXPECT_EQ(atlas->stale(all, 1, 0), all) << "what has no colours is not settled";
+
+  written(1, kUnseen, kNews);
+  std::vector<std::uint32_t> first(all.size(), 0);
+  first[0] = 0x01;
+  int asked = 0;
+  for (std::int64_t image = 2; image < 10; ++image) {
+    const std::vector<std::uint32_t> out = atlas->not_held(all, image);
+    if (out == first)
+      ++asked;
+    else
+      EXPECT_EQ(out, std::vector<std::uint32_t>(all.size(), 0));
+  }
+  EXPECT_EQ(asked, 1) << "a chart that has colours elsewhere is filled from there, until it has its turn";
+}
+
 // Images that are seen at once, and extracted only when the next one does not show the same.
 TEST(ChartAtlas, WhatIsSeenNeedNotBeWritten) {
   Atlas atlas;
   const auto plan = [&] { return atlas->plan(atlas.view(usual_view())).size(); };
   const auto write = [&](std::span<const std::uint32_t> masks, std::int64_t image) {
     auto out = atlas->allocate(masks, image);
+    atlas->note_holes(out, std::vector<std::uint32_t>(4 * out.jobs.size(), kNews));
     atlas->commit();
     atlas->give_back_colours(out.retired);
     return out;
   };
   std::vector<std::uint32_t> all(plan(), 0x55);
-  EXPECT_EQ(atlas->not_held(all), all);
+  EXPECT_EQ(atlas->not_held(all, 0), all);
   std::vector<std::uint32_t> some = all;
   some[0] = 0x01;
   some[1] = 0;
@@ -465,7 +499,7 @@ TEST(ChartAtlas, WhatIsSeenNeedNotBeWritten) {
   std::vector<std::uint32_t> missing(all.size(), 0);
   missing[0] = 0x54;
   missing[1] = 0x55;
-  EXPECT_EQ(atlas->not_held(all), missing);
+  EXPECT_EQ(atlas->not_held(all, 1), missing);
   for (const PageRecord& record : atlas->placed_records()) EXPECT_EQ(atlas->page_of(record).last_seen, 1);
 
   // Seen by every image since it was written: had all been extracted, each would have taken the place of the one
