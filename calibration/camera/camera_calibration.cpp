@@ -193,9 +193,24 @@ class Calibrator {
     const auto rejected = static_cast<double>(result_.solution.rejected.size());
     if (rejected > 0.1 * (result_.solution.points + rejected))
       result_.notes.push_back("over a tenth of the corners do not fit; look for blurred or wrong views");
+    if (const std::vector<std::string> names = strange_views(); !names.empty())
+      result_.notes.push_back("most corners of " + joined(names) +
+                              " do not fit the other views: take them out if they are another camera's, or blurred");
     if (!result_.solution.converged)
       result_.verdict.object("the solver did not converge",
                              "take other views, and check that --board is what was shown");
+  }
+
+  /// Most of whose corners are rejected.
+  std::vector<std::string> strange_views() const {
+    std::vector<std::size_t> rejected(result_.views.views.size());
+    for (const RejectedCorner& corner : result_.solution.rejected) ++rejected[corner.view];
+    std::vector<std::string> out;
+    for (std::size_t v = 0; v < rejected.size(); ++v) {
+      const RigView& view = result_.views.views[v];
+      if (2 * rejected[v] > view.corners[0].size() + view.corners[1].size()) out.push_back("view " + view.name);
+    }
+    return out;
   }
 
   /// Few views look more certain than they are: what the board or the corners have in common, each view has anew.

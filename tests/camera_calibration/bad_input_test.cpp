@@ -219,6 +219,18 @@ TEST(HeldOut, InlierFiguresAreThoseOfTheViewsWithoutWrongCorners) {
   EXPECT_NEAR(score.epipolar_inlier_px, clean.held_out.epipolar_inlier_px, 0.01);
 }
 
+TEST(Rejection, NamesAViewOfAnotherLens) {
+  auto s = synthetic_rig(13, {.views = 16, .cameras = 1});
+  std::vector<Corner>& corners = s.views.views[6].corners[0];
+  const Eigen::Vector2d middle = (corners.front().pixel + corners.back().pixel) / 2;
+  const double rim = (corners.front().pixel - middle).squaredNorm();
+  for (Corner& corner : corners) {
+    const Eigen::Vector2d off = corner.pixel - middle;
+    corner.pixel = middle + off * (1 - 0.4 * off.squaredNorm() / rim);
+  }
+  EXPECT_THAT(calibrate(s.views).notes, Contains(HasSubstr("most corners of view view6 do not fit")));
+}
+
 TEST(HeldOut, AViewThatIsWrongAsAWholeIsNotHidden) {
   auto s = synthetic_rig(12, {.views = 12});
   RigViews test = s.views;
