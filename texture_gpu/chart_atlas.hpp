@@ -135,9 +135,8 @@ class ChartAtlas {
 
   /// Image number `image` sees these pages of the last plan(), whether or not they are written now.
   void note_seen(std::span<const std::uint32_t> masks, std::int64_t image);
-  /// Of these masks of the last plan(), what has no colours yet. Tiles that were written, but of which no texel was
-  /// seen for certain, have to wait for their turn among TextureOptions::images_to_rewrite images, unless the chart has
-  /// no colours at all.
+  /// Of these masks of the last plan(), what has no colours yet. Of tiles that were written, but of which no texel was
+  /// seen for certain, those only whose chart has no colours at all, when they have their turn.
   std::vector<std::uint32_t> not_held(std::span<const std::uint32_t> masks, std::int64_t image) const;
   /// Of these masks, what image number `image` may tell something about: not what has its colours from it, or from one
   /// of the few before it that showed nothing new, but for those before image `since`.

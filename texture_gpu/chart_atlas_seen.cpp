@@ -15,6 +15,8 @@ std::uint32_t tiles_of(std::uint32_t mask) {
   return tiles;
 }
 
+constexpr std::uint64_t kImagesToTryAgain = 4;
+
 std::uint32_t written_tiles(const AtlasPage& page) {
   std::uint32_t tiles = 0;
   for (unsigned tile = 0; tile < 4; ++tile)
@@ -47,7 +49,6 @@ void ChartAtlas::note_seen(std::span<const std::uint32_t> masks, std::int64_t im
 }
 
 std::vector<std::uint32_t> ChartAtlas::not_held(std::span<const std::uint32_t> masks, std::int64_t image) const {
-  const auto period = static_cast<std::uint64_t>(std::max(1, options_.images_to_rewrite));
   std::vector<std::uint32_t> out(masks.begin(), masks.end());
   bool has_colours = false;  // of the record's chart
   for (std::size_t i = 0; i < records_.size(); ++i) {
@@ -55,7 +56,7 @@ std::vector<std::uint32_t> ChartAtlas::not_held(std::span<const std::uint32_t> m
     if (i == 0 || records_[i].chart != records_[i - 1].chart)
       has_colours = std::ranges::any_of(chart.page, [](const AtlasPage& page) { return page.held != 0; });
     const AtlasPage& page = page_of(records_[i]);
-    const bool waits = has_colours && !records_[i].has_turn(image, period);
+    const bool waits = has_colours || !records_[i].has_turn(image, kImagesToTryAgain);
     const bool carried_over = needs_relevel(chart, page_index(records_[i]));
     out[i] &= ~of_tiles(carried_over ? 0xfu : page.held | (waits ? written_tiles(page) : 0u));
   }
@@ -69,7 +70,7 @@ std::vector<std::uint32_t> ChartAtlas::stale(std::span<const std::uint32_t> mask
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const AtlasPage& page = page_of(records_[i]);
     for (unsigned tile = 0; tile < 4; ++tile) {
-      const bool settled = (page.settled & page.held) >> tile & 1u;
+      const bool settled = page.settled >> tile & 1u;
       if (page.tile_from[tile] >= (settled ? oldest : image)) out[i] &= ~of_tiles(1u << tile);
     }
   }
