@@ -54,26 +54,29 @@ std::vector<ListedImage> read_images(const fs::path& root, const fs::path& list)
   return out;
 }
 
-/// Cure of a stamp that no pose belongs to: where it would lie beside one in another unit, that it does.
-std::string cure_of_stamp(const PoseTrack& track, RobotTime stamp) {
+/// Cure of stamps of which one has no pose. Of another unit are those whose last one lies far behind all poses, and
+/// beside one in that unit.
+std::string cure_of_stamps(const PoseTrack& track, RobotTime last) {
   constexpr Duration kBeside = std::chrono::seconds(1);
+  const RobotTime begin = track.samples().front().time, end = track.samples().back().time;
+  const bool is_far = last - end > std::max(kBeside, end - begin);
   for (const auto& [unit, per_second] :
        {std::pair{"milliseconds", 1'000}, {"microseconds", 1'000'000}, {"nanoseconds", 1'000'000'000}}) {
-    const RobotTime meant{stamp.ns / per_second};
-    if (std::chrono::abs(track.nearest(meant).time - meant) <= kBeside)
+    const RobotTime meant{last.ns / per_second};
+    if (is_far && std::chrono::abs(track.nearest(meant).time - meant) <= kBeside)
       return std::string("it looks like ") + unit + ": write seconds, as trajectory.txt";
   }
   return "remove the line, or add poses no more than 0.2 s apart on both sides of it";
 }
 
-// Gives `listed` its pose; T_left_camera is identity for the left camera.
-void place(ListedImage& listed, const PoseTrack& track, const Pose& T_left_camera) {
+// Gives `listed` its pose; T_left_camera is identity for the left camera. `last` is the last stamp of its list.
+void place(ListedImage& listed, const PoseTrack& track, const Pose& T_left_camera, RobotTime last) {
   const PoseTrack::Answer answer = track.at(listed.image.time);
   if (answer.status == StateStatus::invalid) {
     const double away = to_seconds(std::chrono::abs(track.nearest(listed.image.time).time - listed.image.time));
     throw InputError(listed.where,
                      "no pose in trajectory.txt for this image (the nearest is " + std::to_string(away) + " s away)",
-                     cure_of_stamp(track, listed.image.time));
+                     cure_of_stamps(track, last));
   }
   listed.image.T_world_camera = answer.pose * T_left_camera;
   listed.image.pose_status = answer.status;
@@ -118,13 +121,14 @@ std::size_t nearest_frame(const std::vector<RunFrame>& frames, RobotTime time) {
 std::size_t pair_images(std::vector<RunFrame>& frames, std::vector<ListedImage> images, const PoseTrack& track,
                         const Pose& T_left_right) {
   const Duration window = pairing_window(frames);
+  const RobotTime last = images.empty() ? RobotTime{} : images.back().image.time;
   std::size_t paired = 0;
   for (ListedImage& listed : images) {
     RunFrame& frame = frames[nearest_frame(frames, listed.image.time)];
     const auto offset = [&](const RunImage& image) { return std::chrono::abs(image.time - frame.left.time); };
     if (offset(listed.image) > window) continue;
     if (frame.right && offset(*frame.right) <= offset(listed.image)) continue;
-    place(listed, track, T_left_right);
+    place(listed, track, T_left_right, last);
     paired += frame.right ? 0 : 1;
     frame.right = std::move(listed.image);
   }
@@ -181,8 +185,9 @@ RunFolder RunFolder::open(const fs::path& root, const Options& options) {
   run.lens_left_ = left.lens;
 
   const PoseTrack track = read_trajectory(member(run.root_, "trajectory.txt"));
-  for (ListedImage& listed : read_images(run.root_, member(run.root_, "rgb.txt"))) {
-    place(listed, track, Pose::Identity());
+  std::vector<ListedImage> images = read_images(run.root_, member(run.root_, "rgb.txt"));
+  for (ListedImage& listed : images) {
+    place(listed, track, Pose::Identity(), images.back().image.time);
     run.frames_.push_back({std::move(listed.image), std::nullopt});
   }
 

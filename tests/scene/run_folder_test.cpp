@@ -141,6 +141,11 @@ TEST(RunFolder, RefusesBadTrajectories) {
   EXPECT_THAT(error(run), says("rgb.txt:1", "no pose in trajectory.txt", "looks like milliseconds: write seconds"));
   run.write("rgb.txt", "1700000000 rgb/a.png\n");
   EXPECT_THAT(error(run), says("rgb.txt:1", "no pose in trajectory.txt", "looks like nanoseconds: write seconds"));
+  run.write("trajectory.txt", "0 0 0 0 0 0 0 1\n0.1 0 0 0 0 0 0 1\n");
+  run.write("rgb.txt", "0 rgb/a.png\n0.5 rgb/b.png\n");
+  EXPECT_THAT(error(run), says("rgb.txt:2", "0.400000 s away", "remove the line, or add poses")) << "seconds, near 0";
+  run.write("rgb.txt", "0.1 rgb/a.png\n0.6 rgb/b.png\n100 rgb/c.jpg\n");
+  EXPECT_THAT(error(run), says("rgb.txt:2", "0.500000 s away", "looks like milliseconds")) << "as the last one tells";
   EXPECT_THAT(error("trajectory.txt", "1700000000 0 0 0 0 0 0\n"),
               says("trajectory.txt:1", "has 7 fields", "time tx ty tz qx qy qz qw"));
   EXPECT_THAT(error("trajectory.txt", "1700000000 0 0 0 0 0 0 2\n"),
