@@ -63,7 +63,7 @@ TEST(CodingLoss, IsCountedByContrast) {
   LossCount count;
   EXPECT_EQ(count.shares(), even_loss_shares());
   for (int i = 0; i < 20; ++i) count.add(taken, came, steps);
-  const auto& of_step = count.shares()[1];
+  const auto of_step = count.shares()[1];
   EXPECT_LT(of_step[0], 2e-3) << "flat";
   EXPECT_GT(of_step[3], 0.2) << "among stripes";
   EXPECT_EQ(count.shares()[0], even_loss_shares()[0]) << "no tile is of this step";
