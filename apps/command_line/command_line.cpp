@@ -59,10 +59,9 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   if (!jobs.empty() && !unknown.empty() && !unknown.front().starts_with('-'))
     return no_such("subcommand", "", unknown.front(), jobs, help);
   const auto option = std::ranges::find_if(unknown, [](const std::string& word) { return word.starts_with("--"); });
-  if (option != unknown.end() && dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
-    return no_such("option", "--", option->substr(2, option->find('=') - 2), options_of(*command), help);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return "not expected: " + joined(unknown) + "; " + help;
-  return fault_of(error) + "; " + help;
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return fault_of(error) + "; " + help;
+  if (option == unknown.end()) return "not expected: " + joined(unknown) + "; " + help;
+  return no_such("option", "--", option->substr(2, option->find('=') - 2), options_of(*command), help);
 }
 
 /// Numbers such as -.6 as -0.6: CLI11 takes them for options.
