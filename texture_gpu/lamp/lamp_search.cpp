@@ -72,6 +72,7 @@ class LampSearch {
   struct Two {
     double explained = 0, strength = 0;  // of the second, as a share of the first
   };
+  bool what_moves_may_tell() const { return moving_.dark() >= kFewestDark; }
   VectorXd more_hidden(const Candidate& c, const Disc& disc, const StillShadows& images) const;
   static Two both(const VectorXd& first, const VectorXd& second, const VectorXd& brighter);
   bool there_are_several(const Candidate& best, std::span<const Coarse> all);
@@ -261,7 +262,7 @@ bool LampSearch::still_holds(const Candidate& best, const LampAnswer& before) co
 /// The last answer, brought up to date; nothing where it no longer holds as it did, or where what moves may tell now.
 std::optional<LampAnswer> LampSearch::confirm() {
   LampAnswer out = question_.last;
-  if (!out.lamp || out.several || out.told_by_what_moves != moving_.dark() >= kFewestDark) return std::nullopt;
+  if (!out.lamp || out.several || out.told_by_what_moves != what_moves_may_tell()) return std::nullopt;
   Candidate best = as_candidate(*out.lamp);
   refine(best, 3, 8, 0.06, soft_);
   if (!still_holds(best, out)) return std::nullopt;
@@ -319,7 +320,7 @@ LampAnswer LampSearch::answer() {
     if (const std::optional<LampAnswer> confirmed = confirm()) return *confirmed;
   LampAnswer out;
   out.dark = static_cast<int>(moving_.dark());
-  const bool moves = moving_.dark() >= kFewestDark;
+  const bool moves = what_moves_may_tell();
   if (!moves && (question_.last.told_by_what_moves || single_.empty())) return keep(out);
   const std::vector<Coarse> all = coarse();
   std::vector<Candidate> others = fine(all);
