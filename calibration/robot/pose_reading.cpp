@@ -52,6 +52,17 @@ Eigen::Matrix3d transposed(const Eigen::Matrix3d& read) {
   return read.transpose();
 }
 
+/// Seen in a mirror: what is seen right of the middle stands left of it, and so do the board's own points.
+std::vector<Pose> mirrored(std::span<const Pose> poses) {
+  const Eigen::DiagonalMatrix<double, 3> mirror(-1, 1, 1);
+  std::vector<Pose> out(poses.begin(), poses.end());
+  for (Pose& pose : out) {
+    pose.linear() = mirror * pose.linear() * mirror;
+    pose.translation() = mirror * pose.translation();
+  }
+  return out;
+}
+
 std::string instead(double misfit_m, double other_m) {
   return readable(1e3 * other_m, 1) + " mm of misfit instead of " + readable(1e3 * misfit_m, 1) + " mm";
 }
@@ -104,6 +115,11 @@ void require_meant(const HandEyeStart& start, bool forced, std::span<const Robot
   const auto misfit = [&](CameraMount mount, std::span<const RobotPose> of) {
     return start_hand_eye(mount, of, T_camera_board, symmetries).misfit_m;
   };
+  const std::vector<Pose> through_mirror = mirrored(T_camera_board);
+  if (const double m = start_hand_eye(start.mount, poses, through_mirror, mirrored(symmetries)).misfit_m;
+      m < kFitsInstead * start.misfit_m)
+    throw InputError("--images", "the pictures seem to be mirrored: " + instead(start.misfit_m, m),
+                     "switch off the mirroring of the camera or of the program that took them, and take them again");
   const CameraMount other = start.mount == CameraMount::fixed ? CameraMount::moving : CameraMount::fixed;
   if (forced)
     if (const double m = misfit(other, poses); m < kFitsInstead * start.misfit_m)

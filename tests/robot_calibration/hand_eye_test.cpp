@@ -176,6 +176,24 @@ TEST(HandEye, NamesTheReadingOfThePosesThatWasMeant) {
   }
 }
 
+// A board of squares is found in a mirrored picture as well: its points then come in the order of one that is turned
+// over.
+TEST(HandEye, NamesMirroredPictures) {
+  Random random(15);
+  for (const CameraMount mount : {CameraMount::fixed, CameraMount::moving}) {
+    const HandEyeRigOptions options{.mount = mount};
+    HandEyeRig rig = make_rig(random, options);
+    for (BoardView& view : rig.data.corners.views) {
+      for (Corner& corner : view.corners) {
+        corner.pixel.x() = rig.camera.width - 1 - corner.pixel.x();
+        corner.index += options.cols - 1 - 2 * (corner.index % options.cols);
+      }
+      std::ranges::sort(view.corners, {}, &Corner::index);
+    }
+    EXPECT_THAT(input_error([&] { solve_hand_eye(rig.data, quick()); }), HasSubstr("mirrored"));
+  }
+}
+
 TEST(HandEye, NamesTheOtherUnit) {
   Random random(12);
   HandEyeRig rig = make_rig(random, {});
