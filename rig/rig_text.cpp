@@ -178,7 +178,9 @@ std::string rig_text(const RigDraft& draft, const RigDraftOptions& options, cons
       "cameras:  # `driver: v4l2` and `serial:`, or libcamera, in place of `mock` take the picture of real ones\n"
       "  pairing_tolerance_s: 0.008\n"
       "  left: {driver: mock, size_px: [320, 240], rate_hz: 10, exposure_s: 0.008}\n"
-      "  right: {driver: mock, size_px: [320, 240], rate_hz: 10, exposure_s: 0.008}\n";
+      "  right: {driver: mock, size_px: [320, 240], rate_hz: 10, exposure_s: 0.008}\n"
+      "link:\n"
+      "  domain: 0  # of robots that share a network or a host, each has its own; docs/line.md\n";
   out += reasons(options);
   for (const DraftJoint& joint : draft.joints) out += joint_text(joint, rig, options);
   return out;
