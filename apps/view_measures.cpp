@@ -12,7 +12,6 @@
 #include "common/text.hpp"
 #include "pictures/image_metrics.hpp"
 #include "pictures/picture_file.hpp"
-#include "texture_gpu/lamp/lamp_words.hpp"
 #include "texture_gpu/stage_clock.hpp"
 
 namespace foresight {
@@ -107,10 +106,8 @@ void ViewMeasures::take(const ExtractionReport& report, FrameRecord& record) {
   record_.texels = std::max(record_.texels, report.texels_resident);
   record_.images_kept = std::max<std::uint64_t>(record_.images_kept, report.images_kept);
   policy_ = report.policy;
-  lamp_ = report.lamp;
+  lamp_.add(report.lamp, report.newest_image);
   right_factors_ = report.right_factors;
-  if (lamp_.lamp && !lamp_known_from_) lamp_known_from_ = report.newest_image;
-  if (!lamp_.lamp) lamp_known_from_.reset();
 }
 
 void ViewMeasures::measure(FrameRecord& record, double draw_cpu_ms, FrameSource& source, ViewSession& session) {
@@ -142,8 +139,7 @@ void ViewMeasures::note_policy() {
 void ViewMeasures::finish(const FrameSource& source, const ViewSession& session, const std::string& title) {
   record_.drops += source.overtaken() + session.replaced();
   note_policy();
-  if (std::string note = lamp_in_words(lamp_, lamp_known_from_.value_or(RobotTime{})); !note.empty())
-    record_.notes.push_back(std::move(note));
+  if (std::string note = lamp_.in_words(); !note.empty()) record_.notes.push_back(std::move(note));
   if (right_factors_)
     record_.notes.push_back(
         fmt::format("The right camera's colours differ from the left one's: its red counted {:.2f} "

@@ -5,6 +5,7 @@
 #include "apps/replay_report/replay_report.hpp"
 #include "apps/view_outputs.hpp"
 #include "display/view_loop.hpp"
+#include "texture_gpu/lamp/lamp_words.hpp"
 
 namespace foresight {
 
@@ -47,9 +48,8 @@ class ViewMeasures final : public ViewObserver {
   double gain_ = 1;
   std::optional<double> misplacement_px_;
   ChartAtlas::Policy policy_;
-  LampAnswer lamp_;
+  LampHistory lamp_;
   std::optional<Eigen::Vector2d> right_factors_;  // ExtractionReport::right_factors
-  std::optional<RobotTime> lamp_known_from_;
 };
 
 /// What was measured, in a few lines on stdout.

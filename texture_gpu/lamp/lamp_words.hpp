@@ -1,6 +1,7 @@
 // What a user is told of the lamp.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/time.hpp"
@@ -8,8 +9,26 @@
 
 namespace foresight {
 
-/// Where the lamp is, or why its shadows are not foretold; empty where nothing has told of any. `known_from`: the first
-/// image with which it was known.
-std::string lamp_in_words(const LampAnswer& answer, RobotTime known_from);
+/// What was known of the lamp over a run. One thread.
+class LampHistory {
+ public:
+  /// Of each image, in order: what was known with it.
+  void add(const LampAnswer& answer, RobotTime image);
+
+  /// Where the lamp is, or why its shadows are not foretold, and for which images they were though nobody knows it now;
+  /// empty where nothing has told of any.
+  std::string in_words() const;
+
+ private:
+  struct Stretch {
+    RobotTime first, last;  // images
+  };
+
+  LampAnswer answer_;
+  std::optional<Stretch> known_;   // up to now; none: it is not known
+  std::optional<Stretch> before_;  // all that ended, from the first to the last
+  int images_before_ = 0;          // with a lamp, in these
+  int images_ = 0;                 // in known_
+};
 
 }  // namespace foresight
