@@ -1,6 +1,9 @@
 #include "apps/calibrate/pan_tilt_verify.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -15,25 +18,49 @@
 namespace foresight {
 namespace {
 
-struct Score {
+struct Sum {
   double squares = 0;
   int points = 0;
+  double px() const { return std::sqrt(squares / std::max(1, points)); }
+};
 
+struct Score : Sum {
   double worst = 0;  // px, of a corner
   std::string worst_tag;
+  std::map<int, Sum> of_tag;
 
   /// Of the corners of `view`, in the order of its tags.
   void add(const PanTiltView& view, const std::vector<double>& errors) {
     for (std::size_t i = 0; i < errors.size(); ++i) {
       squares += errors[i] * errors[i], ++points;
       const SeenTag& tag = view.tags[i / 4];
+      Sum& of = of_tag[tag.id];
+      of.squares += errors[i] * errors[i], ++of.points;
       if (errors[i] > worst)
         worst = errors[i], worst_tag = "tag " + std::to_string(tag.id) + " in the " +
                                        (tag.camera == 0 ? "left" : "right") + " picture of view " + view.name;
     }
   }
-  double px() const { return std::sqrt(squares / std::max(1, points)); }
+
+  /// Tags without which the rest is within `limit`, the worst first; nothing where they are more than a fourth of all.
+  std::vector<int> moved(double limit) const {
+    std::vector<std::pair<int, Sum>> tags(of_tag.begin(), of_tag.end());
+    std::ranges::sort(tags, std::greater(), [](const auto& tag) { return tag.second.px(); });
+    Sum rest = *this;
+    std::vector<int> out;
+    for (std::size_t i = 0; i < tags.size() / 4 && rest.px() > limit; ++i) {
+      rest.squares -= tags[i].second.squares, rest.points -= tags[i].second.points;
+      out.push_back(tags[i].first);
+    }
+    return rest.px() <= limit ? out : std::vector<int>{};
+  }
 };
+
+std::string which(const std::vector<int>& tags) {
+  std::string out = tags.size() == 1 ? "tag " : "tags ";
+  for (const int tag : tags) out += (tag == tags.front() ? "" : ", ") + std::to_string(tag);
+  return out;
+}
 
 struct PosedView {
   PanTiltView view;
@@ -128,7 +155,14 @@ int verify_head(const PanTiltVerify& options) {
   json["views"] = views.size();
   const auto row = [&](const char* name, const Score& score, double limit, const std::string& cure) {
     const bool good = score.px() <= limit;
-    if (!good) verdict.object(std::string("the error by ") + name + " is above its limit", cure);
+    const std::vector<int> moved = good ? std::vector<int>{} : score.moved(limit);
+    if (!moved.empty())
+      verdict.object(std::string("the error by ") + name + " is above its limit, but not without " + which(moved),
+                     moved.size() == 1
+                         ? "it was moved, or the map is wrong: measure where it is, and correct --tags"
+                         : "they were moved, or the map is wrong: measure where they are, and correct --tags");
+    else if (!good)
+      verdict.object(std::string("the error by ") + name + " is above its limit", cure);
     std::printf("%-9s %s  (limit %s, %s)  %s\n", name, readable(score.px(), 3, " px").c_str(),
                 readable(limit, 3).c_str(), counted(score.points, "corner").c_str(), good ? "pass" : "FAIL");
     if (!good)

@@ -11,6 +11,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 /// One session for all tests: the pictures take most of the time.
 class HeadSession : public testing::Test {
@@ -95,6 +96,20 @@ TEST_F(HeadSession, VerifyPassesItAndFailsAnotherHead) {
   bumped.T_world_pan.rotate(Eigen::AngleAxisd(0.0035, Eigen::Vector3d::UnitX()));
   write_result(*folder_ / "bumped.yaml", result.header, to_yaml(bumped), true);
   EXPECT_EQ(run_calibrate({"verify", "--result", *folder_ / "bumped.yaml", "--run", run}), "1");
+}
+
+TEST_F(HeadSession, VerifyNamesATagThatWasMoved) {
+  ASSERT_EQ(solved_, "0");
+  mock_->record(*folder_ / "third", 5, 6, 0.9);
+  TagMap tags = read_tag_map(*folder_ / "third/tags.txt");
+  ASSERT_TRUE(tags.contains(4));
+  for (Eigen::Vector3d& corner : tags[4]) corner.x() += 0.02;
+  MockHead::write_tags(*folder_ / "moved.txt", tags);
+  EXPECT_EQ(run_calibrate({"verify", "--result", *folder_ / "head.yaml", "--run", *folder_ / "third", "--tags",
+                           *folder_ / "moved.txt", "--json", *folder_ / "moved.json"}),
+            "1");
+  EXPECT_THAT(json_of(*folder_, "moved.json")["failed_because"].dump(),
+              AllOf(HasSubstr("but not without tag 4"), HasSubstr("correct --tags"), Not(HasSubstr("pan-tilt"))));
 }
 
 TEST_F(HeadSession, WrongInputIsNamed) {
