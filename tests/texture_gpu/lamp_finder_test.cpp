@@ -330,12 +330,36 @@ TEST(LampFinder, AFewPointsDoNotTellThatALampIsOff) {
   }
 }
 
-TEST(LampFinder, ForgetsALampThatIsSwitchedOff) {
+TEST(LampFinder, ForgetsALampThatIsSwitchedOffWithinAFewImages) {
   Room room;
   room.show(0, 30, {kLamp});
   ASSERT_TRUE(room.finder.lamp());
-  room.show(30, 150, {});
+  room.show(30, 36, {});
   EXPECT_FALSE(room.finder.lamp());
+  room.show(36, 60, {});
+  EXPECT_FALSE(room.finder.lamp());
+}
+
+TEST(LampFinder, FindsTheLampThatTookThePlaceOfAnother) {
+  Room room;
+  room.show(0, 30, {{{-0.9, -0.4, 1.2}, 0.1, {3.0, 2.5, 2.0}}});
+  ASSERT_TRUE(room.finder.lamp());
+  EXPECT_GT(degrees_off(*room.finder.lamp()), 40);
+  room.show(30, 42, {kLamp});
+  ASSERT_TRUE(room.finder.lamp());
+  EXPECT_LT(degrees_off(*room.finder.lamp()), 8);
+}
+
+// Half as strong, it still throws the shadows that are foretold.
+TEST(LampFinder, KeepsALampThatIsDimmed) {
+  Room room;
+  room.show(0, 30, {kLamp});
+  Lamp dimmed = kLamp;
+  dimmed.strength *= 0.6;
+  for (int i = 30; i < 60; ++i) {
+    room.show(i, i + 1, {dimmed});
+    EXPECT_TRUE(room.finder.lamp()) << i;
+  }
 }
 
 TEST(LampFinder, AsksNothingWhereNothingMoves) {

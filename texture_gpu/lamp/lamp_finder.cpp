@@ -63,6 +63,7 @@ void LampFinder::wait_for_search() const {
 void LampFinder::choose() {
   witnesses_ = choose_witnesses(*scene_, last_, moving_, kWitnesses);
   turned_.assign(witnesses_.size(), false);
+  watch_.begin_anew();
   ++number_;
 }
 
@@ -81,7 +82,22 @@ void LampFinder::add(const SceneState& state, const Vector3d& camera, std::span<
   records_.push_back(std::move(record));
   if (records_.size() > kRecords) records_.pop_front();
   ++recorded_;
-  if (!search_.valid() && recorded_ >= ask_at_) ask();
+  if (search_.valid()) return;
+  watch();
+  if (recorded_ >= ask_at_) ask();
+}
+
+/// Once the light has become another, what was recorded before tells nothing of it, and all begins anew.
+void LampFinder::watch() {
+  if (!answer_.lamp) return watch_.begin_anew();
+  watch_.look(rays_, witnesses_, records_.back(), moving_, *answer_.lamp);
+  const int against = watch_.against();
+  if (against == 0) return;
+  records_.erase(records_.begin(), records_.end() - against);
+  recorded_ = against;
+  ask_at_ = look_around_at_ = 0;
+  answer_ = {};
+  watch_.begin_anew();
 }
 
 void LampFinder::ask() {

@@ -13,6 +13,7 @@
 
 #include "scene/scene_model.hpp"
 #include "texture_gpu/lamp/lamp_search.hpp"
+#include "texture_gpu/lamp/lamp_watch.hpp"
 
 namespace foresight {
 
@@ -48,6 +49,7 @@ class LampFinder {
  private:
   void choose();
   void ask();
+  void watch();
 
   std::shared_ptr<const SceneModel> scene_;
   const bool awaits_;
@@ -57,6 +59,7 @@ class LampFinder {
   std::vector<Witness> witnesses_;
   std::vector<bool> turned_;  // the witness's normal shows to the cameras
   std::deque<LampRecord> records_;
+  LampWatch watch_;  // of answer_.lamp
   int number_ = 0;
   int recorded_ = 0, ask_at_ = 0, look_around_at_ = 0;  // counts of records
   int looked_at_ = 0, answer_at_ = 0;                   // counts of images
