@@ -190,6 +190,7 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
     dispatch_all(all_, rows);
     dispatch(rest_, listed_);
   });
+  draw_silhouettes();
   finish(textures, state.time);
 }
 
@@ -223,6 +224,8 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
       draw_usual();
     dispatch(rest_, p.rest);
   });
+  draw_silhouettes();
+  show_still_edges(*images.newest, T_world_camera);
   finish(textures, state.time);
 }
 
@@ -377,16 +380,37 @@ void PredictedView::dispatch(const WorkList& list, const gl::Program& program) {
   list.dispatch(program);
 }
 
-void PredictedView::finish(const PublishedTextures& textures, RobotTime instant) {
-  if (mixes_ && !draws_part_) {
-    if (gate_) gate_->begin("silhouettes of a view");
-    silhouettes_({lens_, camera_, faces_, rays_, picture_});
-    glBindTextureUnit(0, node_poses_.texture());  // passes over the view find it there
-    if (gate_) {
-      glFinish();
-      gate_->end();
-    }
+void PredictedView::draw_silhouettes() {
+  if (!mixes_ || draws_part_) return;
+  if (gate_) gate_->begin("silhouettes of a view");
+  silhouettes_({lens_, camera_, faces_, rays_, picture_});
+  glBindTextureUnit(0, node_poses_.texture());  // passes over the view find it there
+  if (gate_) {
+    glFinish();
+    gate_->end();
   }
+}
+
+/// After silhouettes were mixed: those of images are.
+void PredictedView::show_still_edges(const PublishedImage& newest, const Pose& T_world_camera) {
+  if (!mixes_ || draws_part_) return;
+  const bool is_first = !still_edges_;  // compiles what later views need
+  if (is_first)
+    still_edges_ = std::make_unique<StillEdges>(lens_, newest.camera->lens(), raster_.has_levels());
+  else if (!StillEdges::may_be_seen(newest, T_world_camera))
+    return;
+  if (gate_) gate_->begin("still edges of a view");
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  glBindImageTexture(kSurfacesImage, faces_.surface.name(), 0, GL_TRUE, 0, GL_READ_ONLY, GL_R32UI);
+  (*still_edges_)(newest, projection_->newest_inputs, T_world_camera, faces_.depth, silhouettes_.tiles());
+  reset_samplers_();
+  if (gate_) {
+    glFinish();
+    gate_->end();
+  }
+}
+
+void PredictedView::finish(const PublishedTextures& textures, RobotTime instant) {
   if (paint_ != ViewPaint::colours) (*painter_)(paint_, picture_, textures, instant);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }

@@ -11,6 +11,7 @@
 #include "display/plane_homographies.hpp"
 #include "display/scene_raster.hpp"
 #include "display/silhouette_pass.hpp"
+#include "display/still_edges.hpp"
 #include "display/surface_records.hpp"
 #include "gl/camera_block.hpp"
 #include "gl/program.hpp"
@@ -120,6 +121,8 @@ class PredictedView {
   void shade(const Pose& T_world_camera, const SceneState& state, const std::shared_ptr<const SceneLight>& light);
   void find_shadows(const Pose& T_world_camera, const SceneState& state,
                     const std::shared_ptr<const SceneLight>& light);
+  void draw_silhouettes();
+  void show_still_edges(const PublishedImage& newest, const Pose& T_world_camera);
   void finish(const PublishedTextures& textures, RobotTime instant);
   struct Rows {
     int first = 0, last = 0;  // beyond the last
@@ -166,6 +169,7 @@ class PredictedView {
   gl::Texture unshaded_;                             // white: where there is no light
   bool prepares_ = false, prepares_images_ = false;  // with the next draw(); with the next one with images
   SilhouettePass silhouettes_;
+  std::unique_ptr<StillEdges> still_edges_;  // from the first view of an image on
   gl::Texture picture_;
   gl::SamplerReset reset_samplers_;
   FrameGate* gate_ = nullptr;

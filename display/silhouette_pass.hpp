@@ -22,6 +22,9 @@ class SilhouettePass {
   };
   void operator()(const View& view);
 
+  /// Of 4x4 pixels, all that may hold silhouettes in the last view: x and 65,536 y of the first of each.
+  const WorkList& tiles() const { return tiles_; }
+
  private:
   static void start(const gl::Program& program, const View& view);
   void find_steps(const View& view);

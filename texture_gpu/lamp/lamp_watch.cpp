@@ -24,8 +24,7 @@ constexpr float kNeverLit = std::numeric_limits<float>::quiet_NaN();
 double darkness(const Lamp& lamp, const Vector3d& l, const Vector3d& n) {
   const double facing = n.dot(l) / std::pow(l.norm(), 3);
   Eigen::Vector3f factors;
-  for (int c = 0; c < 3; ++c)
-    factors[c] = static_cast<float>(std::log(shadow_factor(lamp.strength[c] * facing, 1)));
+  for (int c = 0; c < 3; ++c) factors[c] = static_cast<float>(std::log(shadow_factor(lamp.strength[c] * facing, 1)));
   return luma_of(factors);
 }
 
