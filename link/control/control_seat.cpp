@@ -300,7 +300,9 @@ ControlSeatStatus ControlSeat::status(OperatorTime now) const {
     say("nothing is heard of the robot", "wait for the line");
   } else if (lease_ == 0) {
     say(wanted_ ? "control was asked for" : "connected", wanted_ ? "wait for the answer" : "ask for control");
-    if (!refused_.empty()) say(refused_.c_str(), "");  // it says what to do
+    // Who is told to ask would be refused: he hears it at once.
+    const std::string refused = wanted_ ? refused_ : refusal_text(differences_);
+    if (!refused.empty()) say(refused.c_str(), "");  // it says what to do
   } else if (!out.follows) {
     const ControlWords fault = words_for(state_.fault), cause = words_for(state_.cause);
     const bool presses = held_ && state_.fault != SetPointFault::none;

@@ -367,6 +367,10 @@ TEST_F(ControlDeskTest, WhatDiffersIsNamedAndRefusedWhereItMatters) {
                              testing::Not(HasSubstr("calibration"))));
   EXPECT_EQ(status(wrong).differences.size(), 4u);
   EXPECT_THAT(status(newer).words, HasSubstr("update the robot's program"));
+  wrong.seat.want_control(false);
+  run(500ms);
+  EXPECT_THAT(status(wrong).words, HasSubstr("another URDF")) << "else he would be told to ask for control";
+  EXPECT_EQ(status(wrong).cure, "");
   seats_ = {&harmless};
   engage(harmless);
   EXPECT_EQ(status(harmless).differences.size(), 2u);
