@@ -46,9 +46,17 @@ std::optional<Duration> silence(const SeatStatus& status) {
   return std::nullopt;
 }
 
+/// Why nothing that the robot says of itself is taken: it is another one, and it is heard.
+const Difference* refusal(const SeatStatus& status) {
+  const auto& control = status.control.state_age;
+  if (!control || *control > ControlSeatStatus::kSilentAfter) return nullptr;
+  const auto found = std::ranges::find_if(status.control.differences, &Difference::refuses);
+  return found == status.control.differences.end() ? nullptr : &*found;
+}
+
 SeatLine line_words(const SeatStatus& status) {
   SeatLine out{"line", "", ""};
-  if (const auto silent = silence(status))
+  if (const auto silent = silence(status); silent && !refusal(status))
     return {"line", fmt::format("nothing comes of the robot for {:.1f} s", to_seconds(*silent)),
             "see that its program runs, and that the line is up", Urgency::trouble};
   if (!status.line.clock) return {"line", "no clock of the robot yet", "wait for a round trip", Urgency::note};
@@ -79,9 +87,12 @@ SeatLine images_words(const SeatStatus& status, const std::string& fault) {
 }
 
 SeatLine robot_words(const SeatStatus& status) {
+  const auto silent = silence(status);
+  if (const Difference* other = refusal(status); other && (silent || !status.robot))
+    return {"robot", "it is another one, and what it says of itself is not taken", other->cure, Urgency::trouble};
   if (!status.robot)
     return {"robot", "nothing is heard of it", "see that its program runs with --serve", Urgency::trouble};
-  if (const auto silent = silence(status))
+  if (silent)
     return {"robot", fmt::format("silent for {:.1f} s", to_seconds(*silent)), "wait for the line", Urgency::trouble};
   const link::RobotState& robot = *status.robot;
   const bool commands = status.control.phase == Phase::holding;  // else nobody here can do what a cure says
@@ -158,9 +169,9 @@ SeatLine request_words(const SeatStatus& status) {
   out.words = fmt::format("{}: {}", to_string(fate.what), words.name);
   const bool waits =
       status.control.wanted && status.control.phase != Phase::holding && fate.outcome == RequestOutcome::not_holder;
-  const auto refusal = std::ranges::find_if(status.control.differences, &Difference::refuses);
-  if (refusal != status.control.differences.end())
-    out.cure = refusal->cure;
+  const auto refused = std::ranges::find_if(status.control.differences, &Difference::refuses);
+  if (refused != status.control.differences.end())
+    out.cure = refused->cure;
   else
     out.cure = waits ? "wait until control is granted to you" : with_our_keys(words.cure);
   out.urgency = Urgency::note;

@@ -137,6 +137,25 @@ TEST(SeatWords, ARobotWithOtherFilesIsRefusedOnce) {
   EXPECT_EQ(find(lines, "asked")->cure, "copy it") << "waiting for control would not help";
 }
 
+// Its states name joints that this side does not know, and are refused; its lease and its images come.
+TEST(SeatWords, ARobotThatIsHeardAndNotUnderstoodIsNotCalledSilent) {
+  SeatStatus status = driving();
+  status.held = status.engaged = status.control.follows = false;
+  status.control.phase = Phase::connected;
+  status.control.differences = {{"joint 10 is 'nod'", "give both sides the same rig file", true}};
+  status.control.state_age = Duration{0};
+  status.robot_age = std::chrono::seconds(30);
+  for (const bool heard_before : {true, false}) {
+    if (!heard_before) status.robot.reset(), status.robot_age.reset();
+    const auto lines = seat_lines(status, {}, "");
+    EXPECT_EQ(find(lines, "robot")->words, "it is another one, and what it says of itself is not taken");
+    EXPECT_EQ(find(lines, "robot")->cure, "give both sides the same rig file");
+    EXPECT_EQ(find(lines, "line")->words.find("nothing comes"), std::string::npos) << find(lines, "line")->words;
+  }
+  status.control.state_age = std::chrono::seconds(1);  // now it has gone
+  EXPECT_NE(find(seat_lines(status, {}, ""), "line")->words.find("nothing comes"), std::string::npos);
+}
+
 // Of two operators: G asks for control, but takes the request back of who has asked already.
 TEST(SeatWords, WhoWaitsForControlIsNotToldToAskForIt) {
   SeatStatus status = driving();
