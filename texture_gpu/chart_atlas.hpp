@@ -76,6 +76,8 @@ struct AtlasChart {
   int first_page = 0;  ///< in the page table
   std::vector<AtlasPage> page;
   bool in_view = false;
+  int most_seen = 0;               ///< tiles, by one image
+  std::int64_t more_seen_in = -1;  ///< the image of these
   /// Set from a change of resolution until commit(): what the published generation still holds.
   struct Before {
     Eigen::Vector2d density{0, 0};
@@ -136,7 +138,8 @@ class ChartAtlas {
   /// Image number `image` sees these pages of the last plan(), whether or not they are written now.
   void note_seen(std::span<const std::uint32_t> masks, std::int64_t image);
   /// Of these masks of the last plan(), what has no colours yet. Of tiles that were written, but of which no texel was
-  /// seen for certain, those only whose chart has no colours at all, when they have their turn.
+  /// seen for certain, those only whose chart has no colours at all, when they have their turn or more of the chart is
+  /// seen than ever before.
   std::vector<std::uint32_t> not_held(std::span<const std::uint32_t> masks, std::int64_t image) const;
   /// Of these masks, what image number `image` may tell something about: not what has its colours from it, or from one
   /// of the few before it that showed nothing new, but for those before image `since`.

@@ -1,5 +1,6 @@
 // What images saw of the pages, and which of them the pages have their colours from.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "texture_gpu/chart_atlas.hpp"
@@ -36,8 +37,13 @@ std::uint32_t of_tiles(std::uint32_t tiles) {
 
 void ChartAtlas::note_seen(std::span<const std::uint32_t> masks, std::int64_t image) {
   pages_in_view_ = 0;
+  int tiles = 0;  // of the record's chart
   for (std::size_t i = 0; i < records_.size(); ++i) {
+    if (i == 0 || records_[i].chart != records_[i - 1].chart) tiles = 0;
     if (!masks[i]) continue;
+    tiles += std::popcount(tiles_of(masks[i]));
+    AtlasChart& chart = charts_[records_[i].chart];
+    if (tiles > chart.most_seen) chart.most_seen = tiles, chart.more_seen_in = image;
     ++pages_in_view_;
     AtlasPage& page = page_of(records_[i]);
     if (page.last_seen < image - 1)
@@ -56,7 +62,8 @@ std::vector<std::uint32_t> ChartAtlas::not_held(std::span<const std::uint32_t> m
     if (i == 0 || records_[i].chart != records_[i - 1].chart)
       has_colours = std::ranges::any_of(chart.page, [](const AtlasPage& page) { return page.held != 0; });
     const AtlasPage& page = page_of(records_[i]);
-    const bool waits = has_colours || !records_[i].has_turn(image, kImagesToTryAgain);
+    const bool tries = records_[i].has_turn(image, kImagesToTryAgain) || chart.more_seen_in == image;
+    const bool waits = has_colours || !tries;
     const bool carried_over = needs_relevel(chart, page_index(records_[i]));
     out[i] &= ~of_tiles(carried_over ? 0xfu : page.held | (waits ? written_tiles(page) : 0u));
   }

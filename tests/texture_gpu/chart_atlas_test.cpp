@@ -465,8 +465,18 @@ TEST(ChartAtlas, TilesOfWhichNothingWasSeenHaveNoColours) {
                            [](std::uint32_t mask, int times) { return times + (mask == 0x55 ? 1 : 0); });
   EXPECT_EQ(asked, std::vector<int>(all.size(), 2)) << "charts without any colours are asked for in turn";
 
-  written(9, kUnseen, kNews);
-  for (std::int64_t image = 10; image < 18; ++image)
+  std::vector<std::uint32_t> fewer = all;
+  std::ranges::fill(std::span(fewer).first(all.size() / 2), 0);
+  const auto asked_for = [&](const std::vector<std::uint32_t>& seen, std::int64_t image) {
+    atlas->note_seen(seen, image);
+    return std::ranges::count(atlas->not_held(seen, image), std::uint32_t{0x55});
+  };
+  asked_for(fewer, 9);
+  EXPECT_LT(asked_for(fewer, 10), std::ssize(all) / 2) << "no more of them is seen than before";
+  EXPECT_GE(asked_for(all, 11), std::ssize(all) / 2) << "what comes into view is not black for long";
+
+  written(12, kUnseen, kNews);
+  for (std::int64_t image = 13; image < 21; ++image)
     EXPECT_EQ(atlas->not_held(all, image), std::vector<std::uint32_t>(all.size(), 0))
         << "a chart that has colours elsewhere is filled from there";
 }
