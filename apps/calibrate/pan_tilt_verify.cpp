@@ -21,6 +21,7 @@ namespace {
 struct Sum {
   double squares = 0;
   int points = 0;
+  void add(double error) { squares += error * error, ++points; }
   double px() const { return std::sqrt(squares / std::max(1, points)); }
 };
 
@@ -32,10 +33,9 @@ struct Score : Sum {
   /// Of the corners of `view`, in the order of its tags.
   void add(const PanTiltView& view, const std::vector<double>& errors) {
     for (std::size_t i = 0; i < errors.size(); ++i) {
-      squares += errors[i] * errors[i], ++points;
       const SeenTag& tag = view.tags[i / 4];
-      Sum& of = of_tag[tag.id];
-      of.squares += errors[i] * errors[i], ++of.points;
+      Sum::add(errors[i]);
+      of_tag[tag.id].add(errors[i]);
       if (errors[i] > worst)
         worst = errors[i], worst_tag = "tag " + std::to_string(tag.id) + " in the " +
                                        (tag.camera == 0 ? "left" : "right") + " picture of view " + view.name;
@@ -57,9 +57,9 @@ struct Score : Sum {
 };
 
 std::string which(const std::vector<int>& tags) {
-  std::string out = tags.size() == 1 ? "tag " : "tags ";
-  for (const int tag : tags) out += (tag == tags.front() ? "" : ", ") + std::to_string(tag);
-  return out;
+  std::vector<std::string> names;
+  for (const int tag : tags) names.push_back(std::to_string(tag));
+  return (tags.size() == 1 ? "tag " : "tags ") + joined(names);
 }
 
 struct PosedView {
