@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common/statistics.hpp"
 #include "texture_gpu/lamp/round_lamp.hpp"
@@ -64,7 +65,11 @@ void LampWatch::look(const ShadowRays& rays, std::span<const Witness> witnesses,
   if (!goes_on) lit_.assign(witnesses.size(), kNeverLit);
   std::vector<bool> others = moving;
   others.flip();
-  const ShadowRays::Posed still = rays.pose(record.T_world_node, others);
+  std::optional<ShadowRays::Posed> still;  // once it is asked
+  const auto is_hidden_anyway = [&](const Vector3d& p) {
+    if (!still) still.emplace(rays.pose(record.T_world_node, others));
+    return still->blocked(p, lamp.position, ShadowRays::kContact);
+  };
   Shade shade;
   for (std::size_t k = 0; k < facing.size(); ++k) {
     const std::size_t i = facing[k];
@@ -73,7 +78,7 @@ void LampWatch::look(const ShadowRays& rays, std::span<const Witness> witnesses,
     if (!shaded[k]) {
       lit_[i] = luma;
     } else if (!std::isnan(lit_[i]) && hidden_share(posed, p, lamp.position, lamp.radius, disc) >= kWhole &&
-               !still.blocked(p, lamp.position, ShadowRays::kContact)) {
+               !is_hidden_anyway(p)) {
       const double foretold = darkness(lamp, lamp.position - p, witnesses[i].normal.cast<double>());
       ++shade.points;
       shade.darker += (luma - lit_[i]) * foretold;

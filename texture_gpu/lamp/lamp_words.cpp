@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <utility>
-
 #include "common/counted.hpp"
 
 namespace foresight {
@@ -43,10 +41,11 @@ void LampHistory::add(const LampAnswer& answer, RobotTime image) {
   if (answer.lamp) {
     if (!known_) known_ = {image, image};
     known_->last = image;
-    ++images_;
+    ++known_->images;
   } else if (known_) {
-    before_ = {before_ ? before_->first : known_->first, known_->last};
-    images_before_ += std::exchange(images_, 0);
+    if (!before_) before_ = {known_->first, known_->last};
+    before_->last = known_->last;
+    before_->images += known_->images;
     known_.reset();
   }
 }
@@ -58,7 +57,7 @@ std::string LampHistory::in_words() const {
   return out + fmt::format(
                    "Before, one was believed to be known, and its shadows were shown, with {} from {:.3f} to "
                    "{:.3f} s.",
-                   counted(images_before_, "image"), in_seconds(before_->first), in_seconds(before_->last));
+                   counted(before_->images, "image"), in_seconds(before_->first), in_seconds(before_->last));
 }
 
 }  // namespace foresight

@@ -22,13 +22,12 @@ class LampHistory {
  private:
   struct Stretch {
     RobotTime first, last;  // images
+    int images = 0;         // with a lamp
   };
 
   LampAnswer answer_;
   std::optional<Stretch> known_;   // up to now; none: it is not known
   std::optional<Stretch> before_;  // all that ended, from the first to the last
-  int images_before_ = 0;          // with a lamp, in these
-  int images_ = 0;                 // in known_
 };
 
 }  // namespace foresight
