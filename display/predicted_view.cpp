@@ -139,14 +139,12 @@ void PredictedView::list_covered(Rows rows, const gl::Program& by) const {
 
 template <typename DrawRows>
 void PredictedView::draw_rows(DrawRows draw) const {
-  if (!gate_) return draw(Rows{0, lens_.height()});
   for (Rows rows; rows.last < lens_.height();) {
     rows.first = rows.last;
     const auto bands = static_cast<std::size_t>((lens_.height() - rows.first + kBand - 1) / kBand);
-    rows.last = std::min(rows.first + kBand * static_cast<int>(gate_->begin("rows of a view", bands)), lens_.height());
+    const GpuSlice slice(gate_, "rows of a view", bands);
+    rows.last = std::min(rows.first + kBand * static_cast<int>(slice.units()), lens_.height());
     draw(rows);
-    glFinish();
-    gate_->end();
   }
 }
 
@@ -305,11 +303,9 @@ void PredictedView::start(const Pose& T_world_camera, const SceneState& state, c
                           const std::shared_ptr<const SceneLight>& light) {
   reset_samplers_();
   const SceneState& shown = raster_.shown(T_world_camera, state, faces_.faces);
-  if (gate_) gate_->begin("depth of a view");
-  raster_(T_world_camera, shown, faces_);
-  if (gate_) {
-    glFinish();
-    gate_->end();
+  {
+    const GpuSlice slice(gate_, "depth of a view");
+    raster_(T_world_camera, shown, faces_);
   }
 
   const gl::CameraBlock block = gl::make_camera_block(lens_, faces_.faces);
@@ -343,13 +339,9 @@ void PredictedView::shade(const Pose& T_world_camera, const SceneState& state,
   };
   bind(unshaded_);
   if (!light) return;
-  if (gate_) gate_->begin("shadows of a view");
+  const GpuSlice slice(gate_, "shadows of a view");
   find_shadows(T_world_camera, state, light);
   if (shadows_->is_there) bind(shadows_->pass.light());
-  if (gate_) {
-    glFinish();
-    gate_->end();
-  }
 }
 
 void PredictedView::find_shadows(const Pose& T_world_camera, const SceneState& state,
@@ -382,13 +374,9 @@ void PredictedView::dispatch(const WorkList& list, const gl::Program& program) {
 
 void PredictedView::draw_silhouettes() {
   if (!mixes_ || draws_part_) return;
-  if (gate_) gate_->begin("silhouettes of a view");
+  const GpuSlice slice(gate_, "silhouettes of a view");
   silhouettes_({lens_, camera_, faces_, rays_, picture_});
   glBindTextureUnit(0, node_poses_.texture());  // passes over the view find it there
-  if (gate_) {
-    glFinish();
-    gate_->end();
-  }
 }
 
 /// After silhouettes were mixed: those of images are.
@@ -399,15 +387,11 @@ void PredictedView::show_still_edges(const PublishedImage& newest, const Pose& T
     still_edges_ = std::make_unique<StillEdges>(lens_, newest.camera->lens(), raster_.has_levels());
   else if (!StillEdges::may_be_seen(newest, T_world_camera))
     return;
-  if (gate_) gate_->begin("still edges of a view");
+  const GpuSlice slice(gate_, "still edges of a view");
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   glBindImageTexture(kSurfacesImage, faces_.surface.name(), 0, GL_TRUE, 0, GL_READ_ONLY, GL_R32UI);
   (*still_edges_)(newest, projection_->newest_inputs, T_world_camera, faces_.depth, silhouettes_.tiles());
   reset_samplers_();
-  if (gate_) {
-    glFinish();
-    gate_->end();
-  }
 }
 
 void PredictedView::finish(const PublishedTextures& textures, RobotTime instant) {

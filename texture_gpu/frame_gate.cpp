@@ -80,4 +80,10 @@ void next_slice(FrameGate* gate, const char* kind) {
   gate->begin(kind);
 }
 
+GpuSlice::~GpuSlice() {
+  if (!gate_) return;
+  glFinish();
+  gate_->end();
+}
+
 }  // namespace foresight

@@ -67,4 +67,19 @@ class SlicedWork {
   FrameGate* gate_;
 };
 
+/// One slice, the GPU included, however its scope is left. Null: nothing waits, and it does all units.
+class GpuSlice {
+ public:
+  GpuSlice(FrameGate* gate, const char* kind, std::size_t units = 1)
+      : gate_(gate), units_(gate ? gate->begin(kind, units) : units) {}
+  ~GpuSlice();
+  GpuSlice(const GpuSlice&) = delete;
+
+  std::size_t units() const { return units_; }  ///< that it is to do
+
+ private:
+  FrameGate* gate_;
+  std::size_t units_;
+};
+
 }  // namespace foresight
