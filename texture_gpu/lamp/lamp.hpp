@@ -20,6 +20,11 @@ struct Lamp {
   bool operator==(const Lamp&) const = default;
 };
 
+/// (n . l) / d^2 of a surface with the normal `n` and the lamp at `to_lamp` from it, metres; negative: it faces away.
+inline double facing(const Eigen::Vector3d& n, const Eigen::Vector3d& to_lamp) {
+  return n.dot(to_lamp) / std::pow(to_lamp.norm(), 3);
+}
+
 /// Pixel values go with the light to the power of 1 / kResponse, as gains of the exposure do (exposure.hpp).
 inline constexpr double kResponse = 2.2;
 

@@ -21,27 +21,12 @@ constexpr double kWhole = 0.9;          // of the lamp: the middle of a shadow
 constexpr std::size_t kFewestLit = 50;  // that tell an image's exposure
 constexpr float kNeverLit = std::numeric_limits<float>::quiet_NaN();
 
-/// What all of a lamp in the direction `l`, hidden, does to the luma of a surface, logarithm.
-double darkness(const Lamp& lamp, const Vector3d& l, const Vector3d& n) {
-  const double facing = n.dot(l) / std::pow(l.norm(), 3);
+/// What all of a lamp, hidden, does to the luma of a surface, logarithm.
+double darkness(const Lamp& lamp, const Witness& witness) {
+  const double share = facing(witness.normal.cast<double>(), lamp.position - witness.point.cast<double>());
   Eigen::Vector3f factors;
-  for (int c = 0; c < 3; ++c) factors[c] = static_cast<float>(std::log(shadow_factor(lamp.strength[c] * facing, 1)));
+  for (int c = 0; c < 3; ++c) factors[c] = static_cast<float>(std::log(shadow_factor(lamp.strength[c] * share, 1)));
   return luma_of(factors);
-}
-
-/// Which of the witnesses something hides the middle of the lamp from.
-std::vector<bool> behind(const ShadowRays::Posed& what, std::span<const Witness> witnesses,
-                         std::span<const std::size_t> asked, const Vector3d& lamp) {
-  std::vector<bool> out(asked.size());
-  const ShadowRays::Points to = lamp.cast<float>().replicate<1, ShadowRays::kPacket>();
-  ShadowRays::Points from = to;
-  for (std::size_t first = 0; first < asked.size(); first += ShadowRays::kPacket) {
-    const auto count = static_cast<int>(std::min<std::size_t>(ShadowRays::kPacket, asked.size() - first));
-    for (int i = 0; i < count; ++i) from.col(i) = witnesses[asked[first + static_cast<std::size_t>(i)]].point;
-    const unsigned blocked = what.blocked(from, to, count);
-    for (int i = 0; i < count; ++i) out[first + static_cast<std::size_t>(i)] = blocked >> i & 1u;
-  }
-  return out;
 }
 
 }  // namespace
@@ -51,11 +36,14 @@ void LampWatch::look(const ShadowRays& rays, std::span<const Witness> witnesses,
   static const Disc disc = spiral(ShadowRays::kPacket);
   lit_.resize(witnesses.size(), kNeverLit);
   std::vector<std::size_t> facing;
+  std::vector<Eigen::Vector3f> points;  // of these
   for (std::size_t i = 0; i < witnesses.size(); i += kEvery)
-    if (record.knows(i) && witnesses[i].normal.dot(lamp.position.cast<float>() - witnesses[i].point) > 0)
+    if (record.knows(i) && witnesses[i].normal.dot(lamp.position.cast<float>() - witnesses[i].point) > 0) {
       facing.push_back(i);
+      points.push_back(witnesses[i].point);
+    }
   const ShadowRays::Posed posed = rays.pose(record.T_world_node, moving);
-  const std::vector<bool> shaded = behind(posed, witnesses, facing, lamp.position);
+  const std::vector<bool> shaded = posed.blocked(points, lamp.position);
   std::vector<float> changes;
   for (std::size_t k = 0; k < facing.size(); ++k)
     if (!shaded[k] && !std::isnan(lit_[facing[k]]))
@@ -79,7 +67,7 @@ void LampWatch::look(const ShadowRays& rays, std::span<const Witness> witnesses,
       lit_[i] = luma;
     } else if (!std::isnan(lit_[i]) && hidden_share(posed, p, lamp.position, lamp.radius, disc) >= kWhole &&
                !is_hidden_anyway(p)) {
-      const double foretold = darkness(lamp, lamp.position - p, witnesses[i].normal.cast<double>());
+      const double foretold = darkness(lamp, witnesses[i]);
       ++shade.points;
       shade.darker += (luma - lit_[i]) * foretold;
       shade.foretold += foretold * foretold;

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "common/statistics.hpp"
+#include "texture_gpu/lamp/lamp.hpp"
 
 namespace foresight {
 namespace {
@@ -131,8 +132,7 @@ std::vector<MovingShadows::Shadowed> MovingShadows::shadowed(const Vector3d& lam
                  usually = hidden(witness, lit, lamp, radius, finely);
     if (std::abs(now - usually) < kChanges) continue;
     const Witness& w = witnesses_[witness];
-    const Vector3d l = lamp - w.point.cast<double>();
-    out.push_back({deviation, w.normal.cast<double>().dot(l) / std::pow(l.norm(), 3), now, usually});
+    out.push_back({deviation, facing(w.normal.cast<double>(), lamp - w.point.cast<double>()), now, usually});
   }
   return out;
 }

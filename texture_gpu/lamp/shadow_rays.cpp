@@ -128,4 +128,20 @@ unsigned ShadowRays::Posed::blocked(const Points& from, const Points& to, int co
   return out;
 }
 
+std::vector<bool> ShadowRays::Posed::blocked(std::span<const Eigen::Vector3f> from, const Eigen::Vector3d& to,
+                                             double gap) const {
+  std::vector<bool> out;
+  out.reserve(from.size());
+  const Points ends = to.cast<float>().replicate<1, kPacket>();
+  Points starts = ends;
+  while (out.size() < from.size()) {
+    const auto packet = from.subspan(out.size()).first(std::min<std::size_t>(kPacket, from.size() - out.size()));
+    int count = 0;
+    for (const Eigen::Vector3f& point : packet) starts.col(count++) = point;
+    const unsigned hits = blocked(starts, ends, count, gap);
+    for (int i = 0; i < count; ++i) out.push_back(hits >> i & 1u);
+  }
+  return out;
+}
+
 }  // namespace foresight

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "scene/scene_model.hpp"
@@ -34,6 +35,9 @@ class ShadowRays {
     bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double gap = kGap) const;
     /// Likewise, a bit each of the first `count` ways: cheaper together, most where they lie close to each other.
     unsigned blocked(const Points& from, const Points& to, int count, double gap = kGap) const;
+    /// Likewise, of the ways from each of `from` to one point, in packets as they follow each other.
+    std::vector<bool> blocked(std::span<const Eigen::Vector3f> from, const Eigen::Vector3d& to,
+                              double gap = kGap) const;
 
    private:
     friend class ShadowRays;

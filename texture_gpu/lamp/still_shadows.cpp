@@ -1,7 +1,6 @@
 #include "texture_gpu/lamp/still_shadows.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
@@ -137,27 +136,23 @@ VectorXd StillShadows::hidden(const Vector3d& lamp, double radius, const Disc& d
   return out;
 }
 
-/// Rays of neighbours go together.
 VectorXd StillShadows::hidden_from_point(const Vector3d& lamp) const {
   VectorXd out = VectorXd::Ones(std::ssize(points_));
   const Vector3f at = lamp.cast<float>();
-  const ShadowRays::Points to = at.replicate<1, ShadowRays::kPacket>();
-  ShadowRays::Points from = to;
-  std::array<Eigen::Index, ShadowRays::kPacket> of{};
-  int count = 0;
-  const auto trace = [&](std::size_t image) {
-    const unsigned blocked = images_[image].blocked(from, to, count, ShadowRays::kContact);
-    for (int k = 0; k < count; ++k) out[of[static_cast<std::size_t>(k)]] = blocked >> k & 1u;
-    count = 0;
-  };
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const auto& [witness, image, value] = points_[i];
-    if (witness.normal.dot(at - witness.point) > 0) {
-      from.col(count) = witness.point;
-      of[static_cast<std::size_t>(count++)] = static_cast<Eigen::Index>(i);
+  std::vector<std::size_t> facing;
+  std::vector<Vector3f> from;
+  for (std::size_t i = 0; i < points_.size();) {
+    const std::size_t image = points_[i].image;
+    facing.clear();
+    from.clear();
+    for (; i < points_.size() && points_[i].image == image; ++i) {
+      const Witness& witness = points_[i].witness;
+      if (witness.normal.dot(at - witness.point) <= 0) continue;
+      facing.push_back(i);
+      from.push_back(witness.point);
     }
-    const bool is_last = i + 1 == points_.size() || points_[i + 1].image != image;
-    if (count == ShadowRays::kPacket || is_last) trace(image);
+    const std::vector<bool> blocked = images_[image].blocked(from, lamp, ShadowRays::kContact);
+    for (std::size_t k = 0; k < facing.size(); ++k) out[static_cast<Eigen::Index>(facing[k])] = blocked[k] ? 1 : 0;
   }
   return out;
 }
@@ -171,8 +166,8 @@ VectorXd StillShadows::more_hidden(const Vector3d& lamp, double radius, const Di
 StillShadows::Cast StillShadows::cast(const Vector3d& lamp, double radius, const Disc& disc) const {
   Cast out{VectorXd(std::ssize(points_)), hidden(lamp, radius, disc), {}};
   std::ranges::transform(points_, out.facing.begin(), [&](const Point& point) {
-    const Vector3d l = lamp - point.witness.point.cast<double>();
-    return std::max(0.0, point.witness.normal.cast<double>().dot(l) / std::pow(l.norm(), 3));
+    const Vector3d to_lamp = lamp - point.witness.point.cast<double>();
+    return std::max(0.0, facing(point.witness.normal.cast<double>(), to_lamp));
   });
   const VectorXd more = more_than_around_ * out.hidden;
   for (Eigen::Index i = 0; i < more.size(); ++i)
