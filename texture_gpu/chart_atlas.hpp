@@ -142,7 +142,8 @@ class ChartAtlas {
   /// seen than ever before.
   std::vector<std::uint32_t> not_held(std::span<const std::uint32_t> masks, std::int64_t image) const;
   /// Of these masks, what image number `image` may tell something about: not what has its colours from it, or from one
-  /// of the few before it that showed nothing new, but for those before image `since`.
+  /// of the few before it that showed nothing new, but for those before image `since`. Of what has no colours, the next
+  /// image may tell.
   std::vector<std::uint32_t> stale(std::span<const std::uint32_t> masks, std::int64_t image, std::int64_t since) const;
   /// Image number `image` shows nothing of the tiles in these masks of the last plan(), though it might have.
   void note_hidden(std::span<const std::uint32_t> masks, std::int64_t image);

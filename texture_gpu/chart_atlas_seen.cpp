@@ -76,9 +76,10 @@ std::vector<std::uint32_t> ChartAtlas::stale(std::span<const std::uint32_t> mask
   std::vector<std::uint32_t> out(masks.begin(), masks.end());
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const AtlasPage& page = page_of(records_[i]);
+    const std::uint32_t settled = page.settled & page.held;
     for (unsigned tile = 0; tile < 4; ++tile) {
-      const bool settled = page.settled >> tile & 1u;
-      if (page.tile_from[tile] >= (settled ? oldest : image)) out[i] &= ~of_tiles(1u << tile);
+      const std::int64_t good_from = settled >> tile & 1u ? oldest : image;
+      if (page.tile_from[tile] >= good_from) out[i] &= ~of_tiles(1u << tile);
     }
   }
   return out;

@@ -474,9 +474,14 @@ TEST(ChartAtlas, TilesOfWhichNothingWasSeenHaveNoColours) {
   asked_for(fewer, 9);
   EXPECT_LT(asked_for(fewer, 10), std::ssize(all) / 2) << "no more of them is seen than before";
   EXPECT_GE(asked_for(all, 11), std::ssize(all) / 2) << "what comes into view is not black for long";
+  EXPECT_EQ(atlas->stale(all, 11, 0), all) << "each image may be the first to tell their colours";
 
   written(12, kUnseen, kNews);
-  for (std::int64_t image = 13; image < 21; ++image)
+  written(13, kUnseen, kUnseen);
+  std::vector<std::uint32_t> colourless(all.size(), 0);
+  colourless[0] = 0x01;
+  EXPECT_EQ(atlas->stale(all, 14, 0), colourless) << "the rest has colours that the image before agrees with";
+  for (std::int64_t image = 14; image < 22; ++image)
     EXPECT_EQ(atlas->not_held(all, image), std::vector<std::uint32_t>(all.size(), 0))
         << "a chart that has colours elsewhere is filled from there";
 }
