@@ -81,8 +81,9 @@ class Session {
     if (!operator_.failure().empty()) throw RuntimeFailure(operator_.failure(), "see why, and start again");
     if (!failure_.empty()) throw RuntimeFailure(failure_, cure_);
     if (views_.size() < kFewestViews)
-      throw RuntimeFailure("the board was seen at " + std::to_string(views_.size()) + " stations only",
-                           "start where the camera sees it whole and from the front, with room around");
+      throw RuntimeFailure(
+          "the board was seen at " + std::to_string(views_.size()) + " stations only",
+          "start where the camera sees it whole and from the front, with room around" + words_of_unseen());
     std::string table = "image";
     for (const int joint : chain_.joints) table += "," + chain_.robot.joints[static_cast<std::size_t>(joint)].name;
     for (const View& view : views_) {
@@ -94,6 +95,14 @@ class Session {
 
  private:
   void fail(std::string what, std::string cure) { failure_ = std::move(what), cure_ = std::move(cure); }
+
+  /// Keeps what the camera saw instead of the board: nobody may be where a screen shows it.
+  std::string words_of_unseen() const {
+    if (unseen_.empty()) return "";
+    const std::string file = (options_.views / "").parent_path().string() + "-unseen.png";
+    write_picture(file, unseen_);
+    return "; " + file + " is the last picture without the board";
+  }
 
   void at_station(RobotTime now) {
     if (!stations_) return begin();
@@ -109,6 +118,7 @@ class Session {
     }
     const cv::Mat& picture = options_.side == "right" ? pair->right.bgr : pair->left.bgr;
     const bool seen = look(picture);
+    if (!seen) picture.copyTo(unseen_);
     if (first_ && !seen && !options_.start.empty()) say("the board is not in view at --start");
     if (first_ && !seen && options_.start.empty())
       say("the board is not in view from where the robot stands: --start gives another place");
@@ -152,7 +162,8 @@ class Session {
     if (std::ssize(views_) >= options_.most_views) return operator_.finish();
     if (misses_ >= kMostMissesInARow)
       return fail(std::to_string(misses_) + " stations in a row did not show the board",
-                  "start where the camera sees it whole and from the front: --start, or guide the arm there first");
+                  "start where the camera sees it whole and from the front: --start, or guide the arm there first" +
+                      words_of_unseen());
     go_on();
   }
 
@@ -173,6 +184,7 @@ class Session {
   std::optional<ArmStations> stations_;
   std::vector<View> views_;
   bool first_ = true;
+  cv::Mat unseen_;  // the last picture without the board
   int misses_ = 0;
   std::string failure_, cure_;
 };

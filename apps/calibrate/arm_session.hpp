@@ -25,9 +25,10 @@ void add_arm_session(Command& command, ArmSessionOptions& options);
 
 /// Moves the robot and fills the folder: pictures in which the board was seen while all joints stood still, and
 /// joints.csv with their positions, as read_arm_views() takes them. Says on stderr what it does. Blocks. False: SIGINT
-/// or SIGTERM ended it. Then, and where it throws, nothing of the folder stays. Throws InputError (a rig without robot
-/// or cameras, a start beyond a joint's limits, a board that is not in view at the start) and RuntimeFailure (the robot
-/// stopped, cameras are silent, fewer than 8 views).
+/// or SIGTERM ended it. Then, and where it throws, nothing of the folder stays; where the board was not seen, the last
+/// picture without it is FOLDER-unseen.png. Throws InputError (a rig without robot or cameras, a start beyond a joint's
+/// limits, a board that is not in view at the start) and RuntimeFailure (the robot stopped, cameras are silent, fewer
+/// than 8 views).
 bool run_arm_session(const ArmSessionOptions& options);
 
 }  // namespace foresight

@@ -185,6 +185,15 @@ TEST_F(ArmSession, RefusesWhatCannotWork) {
   EXPECT_THAT(refusal({"--board", kBoard}), HasSubstr("give --home"));
 }
 
+TEST_F(ArmSession, WhereTheBoardIsNotSeenAPictureShowsWhatIs) {
+  const TempFolder folder;
+  EXPECT_THAT(run_calibrate({"arm", "--guided", "--rig", rig_in(folder), "--stepped", "--home", "--board", kBoard,
+                             "--out", folder / "a.yaml"}),
+              testing::AllOf(HasSubstr("25 stations in a row"), HasSubstr("a-views-unseen.png is the last picture")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a-views"));
+  EXPECT_FALSE(cv::imread(folder / "a-views-unseen.png").empty());
+}
+
 // No picture is drawn: whatever is proposed stays within the limits and clear of everything, with turns that differ.
 TEST(ArmStations, ProposesClearStationsThatTurnTheFlange) {
   const Rig rig = read_rig(source_folder() / "configs/minerva.yaml");
