@@ -41,8 +41,7 @@ fs::path make_partial(const fs::path& target) {
 
 /// Absolute, and without the slash that may end a folder's name.
 fs::path name_of(const fs::path& target) {
-  const fs::path out = fs::absolute(target).lexically_normal();
-  return out.has_filename() ? out : out.parent_path();
+  return without_end_slash(fs::absolute(target).lexically_normal());
 }
 
 }  // namespace

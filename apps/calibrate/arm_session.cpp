@@ -11,6 +11,7 @@
 #include "calibration/target/find_corners.hpp"
 #include "common/atomic_file.hpp"
 #include "common/error.hpp"
+#include "common/partial_path.hpp"
 #include "common/stop_signal.hpp"
 #include "common/text.hpp"
 #include "operators/station_operator.hpp"
@@ -99,7 +100,7 @@ class Session {
   /// Keeps what the camera saw instead of the board: nobody may be where a screen shows it.
   std::string words_of_unseen() const {
     if (unseen_.empty()) return "";
-    const std::string file = (options_.views / "").parent_path().string() + "-unseen.png";
+    const std::string file = without_end_slash(options_.views).string() + "-unseen.png";
     write_picture(file, unseen_);
     return "; " + file + " is the last picture without the board";
   }
