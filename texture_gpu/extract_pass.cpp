@@ -38,22 +38,14 @@ ExtractPass::ExtractPass(std::span<const Lens> lenses)
 }
 
 void dispatch_groups(const gl::Program& program, std::size_t count) {
-  constexpr std::size_t kMost = 65535;
-  program.use();
-  for (std::size_t first = 0; first < count; first += kMost) {
-    program.set("first_group", static_cast<int>(first));
-    glDispatchCompute(static_cast<GLuint>(std::min(kMost, count - first)), 1, 1);
-  }
+  dispatch_slices(program, count, nullptr, "");
 }
 
 void dispatch_slices(const gl::Program& program, std::size_t count, FrameGate* gate, const char* kind) {
-  if (!gate) return dispatch_groups(program, count);
   constexpr std::size_t kMost = 65535;
   program.use();
   for (std::size_t first = 0, now = 0; first < count; first += now) {
-    glFinish();
-    gate->end();
-    now = gate->begin(kind, std::min(kMost, count - first));
+    now = next_slice(gate, kind, std::min(kMost, count - first));
     program.set("first_group", static_cast<int>(first));
     glDispatchCompute(static_cast<GLuint>(now), 1, 1);
   }

@@ -73,11 +73,11 @@ bool FrameGate::in_work() const {
   return in_work_;
 }
 
-void next_slice(FrameGate* gate, const char* kind) {
-  if (!gate) return;
+std::size_t next_slice(FrameGate* gate, const char* kind, std::size_t units) {
+  if (!gate) return units;
   glFinish();
   gate->end();
-  gate->begin(kind);
+  return gate->begin(kind, units);
 }
 
 GpuSlice::~GpuSlice() {

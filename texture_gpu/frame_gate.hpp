@@ -48,8 +48,9 @@ class FrameGate {
   bool asked_ = false, in_work_ = false;  // a slice was asked for, and has begun
 };
 
-/// The slice in work ends here, GPU included, and one of `kind` begins when it may. Null: nothing waits.
-void next_slice(FrameGate* gate, const char* kind);
+/// The slice in work ends here, GPU included, and one of `kind` begins when it may: how many of `units` it is to do.
+/// Null: nothing waits, and it does all of them.
+std::size_t next_slice(FrameGate* gate, const char* kind, std::size_t units = 1);
 
 /// Work in slices, one after the other by next_slice(). The last one ends with this, however its scope is left. Null:
 /// nothing waits.

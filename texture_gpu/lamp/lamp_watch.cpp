@@ -35,19 +35,18 @@ void LampWatch::look(const ShadowRays& rays, std::span<const Witness> witnesses,
                      const std::vector<bool>& moving, const Lamp& lamp) {
   static const Disc disc = spiral(ShadowRays::kPacket);
   lit_.resize(witnesses.size(), kNeverLit);
-  std::vector<std::size_t> facing;
+  std::vector<std::size_t> asked;
   std::vector<Eigen::Vector3f> points;  // of these
   for (std::size_t i = 0; i < witnesses.size(); i += kEvery)
     if (record.knows(i) && witnesses[i].normal.dot(lamp.position.cast<float>() - witnesses[i].point) > 0) {
-      facing.push_back(i);
+      asked.push_back(i);
       points.push_back(witnesses[i].point);
     }
   const ShadowRays::Posed posed = rays.pose(record.T_world_node, moving);
   const std::vector<bool> shaded = posed.blocked(points, lamp.position);
   std::vector<float> changes;
-  for (std::size_t k = 0; k < facing.size(); ++k)
-    if (!shaded[k] && !std::isnan(lit_[facing[k]]))
-      changes.push_back(luma_of(record.value(facing[k])) - lit_[facing[k]]);
+  for (std::size_t k = 0; k < asked.size(); ++k)
+    if (!shaded[k] && !std::isnan(lit_[asked[k]])) changes.push_back(luma_of(record.value(asked[k])) - lit_[asked[k]]);
   const bool goes_on = changes.size() >= kFewestLit;
   const float exposure = goes_on ? median(std::move(changes)) : 0;
   if (!goes_on) lit_.assign(witnesses.size(), kNeverLit);
@@ -59,8 +58,8 @@ void LampWatch::look(const ShadowRays& rays, std::span<const Witness> witnesses,
     return still->blocked(p, lamp.position, ShadowRays::kContact);
   };
   Shade shade;
-  for (std::size_t k = 0; k < facing.size(); ++k) {
-    const std::size_t i = facing[k];
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const std::size_t i = asked[k];
     const float luma = luma_of(record.value(i)) - exposure;
     const Vector3d p = witnesses[i].point.cast<double>();
     if (!shaded[k]) {

@@ -139,20 +139,20 @@ VectorXd StillShadows::hidden(const Vector3d& lamp, double radius, const Disc& d
 VectorXd StillShadows::hidden_from_point(const Vector3d& lamp) const {
   VectorXd out = VectorXd::Ones(std::ssize(points_));
   const Vector3f at = lamp.cast<float>();
-  std::vector<std::size_t> facing;
+  std::vector<std::size_t> asked;
   std::vector<Vector3f> from;
   for (std::size_t i = 0; i < points_.size();) {
     const std::size_t image = points_[i].image;
-    facing.clear();
+    asked.clear();
     from.clear();
     for (; i < points_.size() && points_[i].image == image; ++i) {
       const Witness& witness = points_[i].witness;
       if (witness.normal.dot(at - witness.point) <= 0) continue;
-      facing.push_back(i);
+      asked.push_back(i);
       from.push_back(witness.point);
     }
     const std::vector<bool> blocked = images_[image].blocked(from, lamp, ShadowRays::kContact);
-    for (std::size_t k = 0; k < facing.size(); ++k) out[static_cast<Eigen::Index>(facing[k])] = blocked[k] ? 1 : 0;
+    for (std::size_t k = 0; k < asked.size(); ++k) out[static_cast<Eigen::Index>(asked[k])] = blocked[k] ? 1 : 0;
   }
   return out;
 }
