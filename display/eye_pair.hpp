@@ -21,6 +21,10 @@ class EyePair {
 
   /// As ViewSession::draw, the eyes to the left and right of the camera.
   bool draw(const Pose& T_world_camera, const SceneState& state);
+  /// PredictedView::show_vignetting, of both.
+  void show_vignetting(bool shown) {
+    for (PredictedView& eye : eyes_) eye.show_vignetting(shown);
+  }
   /// PredictedView::set_paint, of both.
   void set_paint(ViewPaint paint) {
     for (PredictedView& eye : eyes_) eye.set_paint(paint);

@@ -174,7 +174,7 @@ std::vector<std::shared_ptr<const SceneLight>> PredictedView::lights_to_prepare(
 
 void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
                              const std::shared_ptr<const SceneLight>& light) {
-  start(T_world_camera, state, textures, light);
+  start(T_world_camera, state, textures, light, textures.vignetting);
   for (const gl::Program* program : {&all_, &listed_})
     set_tone(*program, textures.display_gain, textures.sharp, textures);
   start_part();
@@ -196,7 +196,7 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
 void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
                              const NewestImages& images, const std::shared_ptr<const SceneLight>& light,
                              const PublishedImage* before) {
-  start(T_world_camera, state, textures, light);
+  start(T_world_camera, state, textures, light, images.newest->tone.tail<2>());
   look_up(images, before);
   const bool any_kept = !images.others.empty() && !draws_part_;
   if (any_kept) {
@@ -300,7 +300,7 @@ void PredictedView::draw_usual_and_before(const PublishedImage& before, float sh
 }
 
 void PredictedView::start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
-                          const std::shared_ptr<const SceneLight>& light) {
+                          const std::shared_ptr<const SceneLight>& light, const Eigen::Vector2f& vignetting) {
   reset_samplers_();
   const SceneState& shown = raster_.shown(T_world_camera, state, faces_.faces);
   {
@@ -308,8 +308,9 @@ void PredictedView::start(const Pose& T_world_camera, const SceneState& state, c
     raster_(T_world_camera, shown, faces_);
   }
 
-  const gl::CameraBlock block = gl::make_camera_block(lens_, faces_.faces);
-  camera_.write(std::span(&block, 1));
+  gl::CameraBlock block = gl::make_camera_block(lens_, faces_.faces);
+  if (has_rim_) block.tone.segment<2>(1) = vignetting;
+  camera_.write(std::span<const gl::CameraBlock>(&block, 1));
   std::vector<Eigen::Vector4f> rows;
   for (const Pose& T_world_node : shown.T_world_node) {
     const Eigen::Matrix4f m = (T_world_node.inverse() * T_world_camera).matrix().cast<float>();

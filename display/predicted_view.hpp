@@ -52,6 +52,11 @@ class PredictedView {
   /// or stay what was looked up.
   void mix_silhouettes(bool mixed) { mixes_ = mixed; }
 
+  /// Whether pixels towards the view's rim are as dark as the camera's lens makes the newest image there
+  /// (PublishedTextures::vignetting), by their share of half the diagonal, or as bright as in its middle, as from the
+  /// start.
+  void show_vignetting(bool shown) { has_rim_ = shown; }
+
   /// The next draw(), and the next one with images, compile what later ones need: with the textures' light known or
   /// not, with an image before the newest one or without. They take some drawings longer.
   void prepare() { prepares_ = prepares_images_ = true; }
@@ -117,7 +122,7 @@ class PredictedView {
     bool is_there = false;
   };
   void start(const Pose& T_world_camera, const SceneState& state, const PublishedTextures& textures,
-             const std::shared_ptr<const SceneLight>& light);
+             const std::shared_ptr<const SceneLight>& light, const Eigen::Vector2f& vignetting);
   void shade(const Pose& T_world_camera, const SceneState& state, const std::shared_ptr<const SceneLight>& light);
   void find_shadows(const Pose& T_world_camera, const SceneState& state,
                     const std::shared_ptr<const SceneLight>& light);
@@ -173,7 +178,7 @@ class PredictedView {
   gl::Texture picture_;
   gl::SamplerReset reset_samplers_;
   FrameGate* gate_ = nullptr;
-  bool mixes_ = true;
+  bool mixes_ = true, has_rim_ = false;
   ViewPaint paint_ = ViewPaint::colours;
   std::unique_ptr<PaintPass> painter_;  // once it is needed
 };

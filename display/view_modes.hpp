@@ -88,7 +88,7 @@ class ViewSize {
   std::vector<double> costs_ms_;            // of pictures since then
 };
 
-/// The same lens with so many times its pixels along each side.
+/// The same lens with so many times its pixels along each side, 1 at most.
 Lens scaled_lens(const Lens& lens, double scale);
 
 /// Where the border of a split picture lies, as a share of the width; the mouse takes it where it is pressed near it.

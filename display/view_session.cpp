@@ -52,6 +52,7 @@ ViewSession::ViewSession(gl::Context& context, const ViewSetup& setup)
 void ViewSession::make_own_view(const ViewSetup& setup) {
   view_ = std::make_unique<PredictedView>(make_view(setup.left));
   view_->mix_silhouettes(setup.silhouettes);
+  view_->show_vignetting(true);
 }
 
 void ViewSession::rehearse(const ViewSetup& setup) {

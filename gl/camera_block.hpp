@@ -21,7 +21,7 @@ struct CameraBlock {
   Eigen::Vector4f tangential = Eigen::Vector4f::Zero();  ///< p1 p2, model (0 none 1 rational 2 equidistant), max radius
   Eigen::Vector4f size = Eigen::Vector4f::Zero();        ///< image width, height; face width, height; px
   Eigen::Vector4f face = Eigen::Vector4f::Zero();        ///< fx fy cx cy of the faces, px
-  Eigen::Vector4f tone = Eigen::Vector4f::Zero();        ///< see texture_gpu/exposure.hpp: factor, vignette a, b; faces
+  Eigen::Vector4f tone = Eigen::Vector4f::Zero();  ///< see texture_gpu/exposure.hpp: factor, vignetting a and b; faces
 };
 static_assert(sizeof(CameraBlock) == 7 * 16);
 

@@ -120,6 +120,7 @@ ViewMode SeatViews::mode_now(bool trusted) const {
 std::string SeatViews::words(bool trusted) const {
   std::string out = to_string(mode_);
   const bool shows_both = mode_ == ViewMode::both || mode_ == ViewMode::split;
+  if (!trusted && newest_[0].empty()) return "no image has come yet";
   if (!trusted && shows_both)
     out += " (as prediction cannot be trusted, look at the newest image)";
   else if (!trusted && mode_ != ViewMode::newest)
@@ -207,6 +208,7 @@ void SeatViews::draw_eyes(ViewSession& session, const ViewPlace& place, const Vi
   if (!pair) pair.emplace(session, lenses, setup_.eyes_apart);
   pair->set_lenses(lenses);
   pair->set_paint(paint_of_views());
+  pair->show_vignetting(!shows_panels());
   has_eyes_ = pair->draw(place.T_world_camera, place.scene);
 }
 
@@ -218,6 +220,7 @@ void SeatViews::draw_again(ViewSession& session, const ViewPlace& place, const V
   if (!size_.lens() && paint_of_views() == ViewPaint::colours) return;
   PredictedView& view = view_through(again_, session, size_.lens().value_or(size_.own()));
   view.set_paint(paint_of_views());
+  view.show_vignetting(true);
   shows_again_ = session.draw(view, place.T_world_camera, place.scene);
 }
 

@@ -117,7 +117,7 @@ void ExposureEstimator::learn_vignetting(const std::vector<Eigen::Vector3d>& row
   const Eigen::Vector2d solution = covariance * (0.1 * moment_);
   const Eigen::Vector2d at_corner(1, 1);
   const double value = at_corner.dot(solution), deviation = std::sqrt(at_corner.dot(covariance * at_corner));
-  const bool trusted = deviation < 0.03 && std::abs(value) > 3 * deviation && std::abs(value) < 2;
+  const bool trusted = std::abs(value) > 3 * deviation && std::abs(value) < 2;
   applied_ = trusted ? solution : Eigen::Vector2d::Zero();
 }
 

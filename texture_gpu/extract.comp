@@ -8,6 +8,7 @@
 #include "camera.glsl"
 #include "seen.glsl"
 #include "image_taps.glsl"
+#include "vignetting.glsl"
 #include "atlas.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform samplerBuffer geometry;  // per job and camera four texels (ChartAtlas::write_job_geometry)

@@ -18,8 +18,9 @@ struct FrameOnGpu {
   std::vector<AtlasView> views;                            ///< of each image
   SeenInputs inputs;
   bool compared = false;
-  bool lent = false;                        ///< `published` says all of its images
-  double log_gain = 0;                      ///< of the left image (exposure.hpp)
+  bool lent = false;    ///< `published` says all of its images
+  double log_gain = 0;  ///< of the left image (exposure.hpp), as the next
+  Eigen::Vector2d vignetting{0, 0};
   std::shared_ptr<const SceneLight> light;  ///< whose shadows were taken out of it; null: none were
 
   RobotTime time() const { return images.front().time; }

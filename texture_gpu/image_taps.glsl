@@ -20,12 +20,3 @@ vec4 sample_sharply(sampler2D image, vec2 pixel, vec2 size, float sharp) {
 vec3 unscaled(vec4 colour) {
   return colour.rgb / max(colour.a, 0.05);
 }
-
-// What the lens takes away towards the image's rim (exposure.hpp): factor on `pixel`'s value that gives it back. `tone`:
-// CameraBlock::tone.
-float without_vignetting(vec4 tone, vec2 pixel, vec2 size) {
-  vec2 half_size = 0.5 * (size - 1.0);
-  vec2 offset = pixel - half_size;
-  float r2 = dot(offset, offset) / dot(half_size, half_size);
-  return exp(-r2 * (tone.y + r2 * tone.z));
-}

@@ -28,6 +28,7 @@ struct PublishedTextures {
   std::uint64_t number = 0;                    ///< counts up with each publish
   RobotTime newest_image;                      ///< capture instant of the newest image in it
   float display_gain = 1;                      ///< factor on colours that shows the newest image's exposure
+  Eigen::Vector2f vignetting{0, 0};            ///< of the newest image: a and b (exposure.hpp)
   float sharp = 0.6f;                          ///< share of the cubic filter that suits them (sharpness.hpp)
   gl::BufferTexture table;                     ///< R32UI: colour slot of each page
   gl::BufferTexture charts;                    ///< RGBA32F: five texels a chart (chart_record.glsl)

@@ -7,6 +7,7 @@
 #include "camera.glsl"
 #include "seen.glsl"
 #include "image_taps.glsl"
+#include "vignetting.glsl"
 #include "image_point.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 8) uniform sampler2D still_before;

@@ -164,6 +164,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   next->light = frame.light;
   next->light_age = frame.light ? static_cast<float>(to_seconds(frame.time() - in_light_since_)) : -1;
   next->display_gain = static_cast<float>(std::exp(frame.log_gain));
+  next->vignetting = frame.vignetting.cast<float>();
   generations_.retire(current_, std::move(allocation.retired));
   current_ = next;
   latest.publish(next);
@@ -269,6 +270,7 @@ void TextureCore::look(const PosedFrame& frame) {
   mark("edges");
   newest_.update_inputs(std::vector<Eigen::Vector3f>(count, {1, 0, 0}));
   newest_.log_gain = exposures_[0].log_gain();
+  newest_.vignetting = exposures_[0].vignetting();
   if (options_.shadows) {
     if (light_.find_lamp(newest_, options_.depth_tolerance)) mark("lamp");
     const bool rehearses_light = rehearses_ && number_ >= kRehearsedWithoutLight;
@@ -391,6 +393,7 @@ void TextureCore::estimate_exposure() {
   }
   newest_.update_inputs(tones);
   newest_.log_gain = exposures_[0].log_gain();
+  newest_.vignetting = exposures_[0].vignetting();
 }
 
 void TextureCore::fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next) {

@@ -3,6 +3,7 @@
 #include "camera.glsl"
 #include "seen.glsl"
 #include "image_taps.glsl"
+#include "vignetting.glsl"
 layout(local_size_x = 64) in;
 layout(binding = 7) uniform samplerBuffer witnesses;  // point, normal; world
 layout(binding = 0, std430) writeonly buffer Brightness { vec4 brightness[]; };

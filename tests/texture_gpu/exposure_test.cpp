@@ -92,6 +92,14 @@ TEST(ExposureEstimator, LearnsVignettingFromPagesThatMove) {
     EXPECT_NEAR(estimator.vignetting_log(r2), r2 * (options.a + r2 * options.b), 0.02) << "at r^2 = " << r2;
 }
 
+// What is far beyond its own error helps long before that error is small.
+TEST(ExposureEstimator, AStrongVignettingIsKnownAfterAFewImages) {
+  Drift drift({.a = -0.6, .noise = 0.02, .pages = 80});
+  ExposureEstimator estimator;
+  for (int image = 0; image < 8; ++image) drift.show(estimator, image);
+  EXPECT_NEAR(estimator.vignetting_log(1), -0.6, 0.12);
+}
+
 TEST(ExposureEstimator, InventsNoVignetting) {
   for (bool moving : {true, false}) {
     Drift drift({.moving = moving});
