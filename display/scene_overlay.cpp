@@ -1,10 +1,7 @@
 #include "display/scene_overlay.hpp"
 
+#include "display/shaders.hpp"
 #include "gl/camera_block.hpp"
-
-namespace foresight::gl {
-const ShaderSources& display_shaders();
-}  // namespace foresight::gl
 
 namespace foresight {
 namespace {

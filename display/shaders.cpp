@@ -2,10 +2,6 @@
 
 #include "texture_gpu/shaders.hpp"
 
-namespace foresight::gl {
-const ShaderSources& display_shaders();
-}  // namespace foresight::gl
-
 namespace foresight {
 
 const gl::ShaderSources& display_and_lookup_shaders() {

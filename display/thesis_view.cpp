@@ -1,11 +1,8 @@
 #include "display/thesis_view.hpp"
 
+#include "display/shaders.hpp"
 #include "gl/lens_rays.hpp"
 #include "pictures/view_alpha.hpp"
-
-namespace foresight::gl {
-const ShaderSources& display_shaders();
-}  // namespace foresight::gl
 
 namespace foresight {
 namespace {

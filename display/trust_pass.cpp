@@ -4,9 +4,7 @@
 #include <array>
 #include <string>
 
-namespace foresight::gl {
-const ShaderSources& display_shaders();
-}  // namespace foresight::gl
+#include "display/shaders.hpp"
 
 namespace foresight {
 namespace {
