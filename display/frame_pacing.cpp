@@ -25,17 +25,26 @@ Duration rounded(double nanoseconds) {
   return Duration{std::llround(nanoseconds)};
 }
 
-/// Distances between successive ends are whole refreshes: of how many ns, by the shortest divided by `parts`? 0: no.
-double refresh_of(const std::vector<double>& apart, double parts) {
-  double refresh = *std::ranges::min_element(apart) / parts;
+/// Instants, ns, lie whole refreshes apart: of how many ns, by the `step` apart that is `parts` of them? One of them
+/// that is late counts for no more than its place (Theil-Sen, https://en.wikipedia.org/wiki/Theil-Sen_estimator). 0:
+/// no.
+double refresh_of(const std::vector<double>& ends, double step, double parts) {
+  double refresh = step / parts;
   if (refresh < kShortestRefresh || refresh > kLongestRefresh) return 0;
-  for (int round = 0; round < 3; ++round) {
-    double sum = 0, count = 0;
-    for (const double d : apart) sum += d, count += std::max(1.0, std::round(d / refresh));
-    refresh = sum / count;
-  }
   std::vector<double> off;
-  for (const double d : apart) off.push_back(std::abs(d - refresh * std::round(d / refresh)));
+  for (int round = 0; round < 2; ++round) {
+    std::vector<double> counted{0}, slopes;  // refreshes since the first
+    for (std::size_t i = 1; i < ends.size(); ++i)
+      counted.push_back(std::max(counted.back() + 1, std::round((ends[i] - ends[0]) / refresh)));
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      for (std::size_t j = i + 1; j < ends.size(); ++j)
+        slopes.push_back((ends[j] - ends[i]) / (counted[j] - counted[i]));
+    refresh = median(slopes);
+  }
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    const double apart = ends[i] - ends[i - 1];
+    off.push_back(std::abs(apart - refresh * std::round(apart / refresh)));
+  }
   return quantile(off, 0.75) < 0.06 * refresh ? refresh : 0;
 }
 
@@ -117,18 +126,22 @@ void FramePacing::look_for_display() {
 
 // A display holds swaps until its own instants, whenever they begin; else they end when they are made to.
 bool FramePacing::lock_to(const std::vector<Swap>& swaps) {
-  std::vector<double> apart;
-  for (std::size_t i = 1; i < swaps.size(); ++i) apart.push_back(ns(swaps[i].end - swaps[i - 1].end));
+  std::vector<double> at, apart;
+  for (const Swap& swap : swaps) at.push_back(ns(swap.end - swaps.front().end));
+  for (std::size_t i = 1; i < at.size(); ++i) apart.push_back(at[i] - at[i - 1]);
   if (apart.empty() || *std::ranges::min_element(apart) <= 0) return false;
+  // Not the shortest: one swap that is late makes the next distance shorter.
+  const double step = quantile(apart, 0.2);
   double refresh = 0;
-  for (double parts = 1; parts <= 4 && refresh == 0; ++parts) refresh = refresh_of(apart, parts);
+  for (double parts = 1; parts <= 4 && refresh == 0; ++parts) refresh = refresh_of(at, step, parts);
   if (refresh == 0) return false;
   refresh_ns_ = refresh;
   anchor_ = swaps.back().end;
   std::vector<double> begins, ends;
   for (const Swap& swap : swaps) ends.push_back(ns(off_grid(swap.end)));
-  anchor_ = anchor_ + rounded(median(ends));
-  for (double& end : ends) end = std::abs(end - median(ends));
+  const double late = median(ends);
+  anchor_ = anchor_ + rounded(late);
+  for (double& end : ends) end = std::abs(end - late);
   for (const Swap& swap : swaps) begins.push_back(ns(off_grid(swap.begin)));
   const double middle = median(begins);
   for (double& begin : begins) begin = std::abs(begin - middle);

@@ -22,6 +22,7 @@ struct World {
   double draw = 6, draw_jitter = 1;
   double sleep_jitter = 0.3;  // sleeps end so late, at most
   double display_jitter = 0.05;
+  double late = 0;          // the thread goes on so long after the display took the frame
   bool work_waits = false;  // for the time between frames, in slices of 2 ms
 };
 
@@ -52,6 +53,7 @@ class Simulation {
       if (world.refresh > 0)
         now_ = world.phase + world.refresh * std::ceil((now_ - world.phase) / world.refresh) +
                world.display_jitter * uniform();
+      now_ += world.late;
       frame.swapped = now_;
       pacing_.swapped(at(now_), world.work_waits ? budget_.rest_due(at(now_)) : Duration{0});
       budget_.frame_ends(at(now_), pacing_.wake());
@@ -154,6 +156,24 @@ TEST(FramePacing, ARateBelowTheDisplaysTakesEveryOtherRefresh) {
   simulation.run(world, 200);
   ASSERT_EQ(simulation.pacing().figures().phase, PacingPhase::locked);
   for (const double apart : intervals(simulation.run(world, 500))) EXPECT_NEAR(apart, 1e3 / 30, 0.1);
+}
+
+// The thread was not scheduled for some milliseconds, once in so many frames as are looked at together.
+TEST(FramePacing, OneLateSwapHidesNoDisplay) {
+  for (int place = 0; place < 16; ++place)
+    for (const double late : {0.3, 0.45, 0.7, 0.9}) {
+      SCOPED_TRACE(testing::Message() << "frame " << place << " of 16 is late by " << late << " refreshes");
+      World world;
+      world.refresh = 1e3 / 60;
+      world.draw = 3;
+      Simulation simulation(at_rate(30));
+      for (int i = 0; i < 96; ++i) {
+        world.late = i % 16 == place ? late * world.refresh : 0;
+        simulation.run(world, 1);
+      }
+      EXPECT_EQ(simulation.pacing().figures().phase, PacingPhase::locked);
+      EXPECT_NEAR(std::remainder(1e3 / 30, to_seconds(simulation.pacing().figures().refresh) * 1e3), 0, 0.1);
+    }
 }
 
 // To another screen, without anybody saying so.
