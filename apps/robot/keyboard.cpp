@@ -18,19 +18,15 @@ Keyboard::~Keyboard() {
 }
 
 std::string Keyboard::pressed() {
-  std::string out;
+  std::string typed;
   pollfd input{STDIN_FILENO, POLLIN, 0};
   char bytes[64];
   while (is_terminal_ && poll(&input, 1, 0) == 1 && (input.revents & POLLIN) != 0) {
     const auto count = read(STDIN_FILENO, bytes, sizeof bytes);
     if (count <= 0) break;
-    out.append(bytes, static_cast<std::size_t>(count));
+    typed.append(bytes, static_cast<std::size_t>(count));
   }
-  // Arrow keys are escape sequences: ESC [ A up, B down, C right, D left.
-  for (const auto& [sequence, key] : {std::pair("\x1b[A", "+"), {"\x1b[B", "-"}, {"\x1b[C", "+"}, {"\x1b[D", "-"}})
-    for (std::size_t at = out.find(sequence); at != std::string::npos; at = out.find(sequence, at))
-      out.replace(at, 3, key);
-  return out;
+  return keys_.of(typed);
 }
 
 }  // namespace foresight
