@@ -30,9 +30,12 @@ void AnyTracker::watch(Device& device, OperatorTime now) noexcept {
 }
 
 // Compared, not subtracted: an instant of another clock may be any number.
+bool AnyTracker::is_silent(const Device& device, OperatorTime now) noexcept {
+  return device.state.connected && device.state.time < now - HandWatchOptions{}.frozen_after;
+}
+
 bool AnyTracker::is_frozen(const Device& device, OperatorTime now) noexcept {
-  if (!device.state.connected) return false;
-  return device.state.time < now - HandWatchOptions{}.frozen_after || (device.pose && device.stirred < now - kStill);
+  return is_silent(device, now) || (device.state.connected && device.pose && device.stirred < now - kStill);
 }
 
 // Whose switch was just pressed.
@@ -59,6 +62,13 @@ std::vector<AnyTracker::Missing> AnyTracker::missing() const {
   return out;
 }
 
+template <typename SaysMore>
+void AnyTracker::show_instead(SaysMore says_more) noexcept {
+  if (says_more(devices_[shown_])) return;
+  const auto other = std::ranges::find_if(devices_, says_more);
+  if (other != devices_.end()) shown_ = static_cast<std::size_t>(other - devices_.begin());
+}
+
 TrackerState AnyTracker::read(OperatorTime now) noexcept {
   for (Device& device : devices_) {
     device.state = device.tracker->read(now);
@@ -72,10 +82,11 @@ TrackerState AnyTracker::read(OperatorTime now) noexcept {
   if (goes_on && is_frozen(devices_[shown_], now)) take_charge();
   in_charge_ = was ? goes_on : take_charge();
   if (!was && in_charge_) lost_.reset();
-  // Where nobody drives, one that is there says more than one that is not. One that has just gone ends the motion.
-  if (!was && !in_charge_ && !devices_[shown_].state.connected) {
-    const auto there = std::ranges::find_if(devices_, [](const Device& device) { return device.state.connected; });
-    if (there != devices_.end()) shown_ = static_cast<std::size_t>(there - devices_.begin());
+  // Where nobody drives, one that is there says more than one that is not, and one that speaks more than one that is
+  // frozen. One that has just gone ends the motion.
+  if (!was && !in_charge_) {
+    show_instead([](const Device& device) { return device.state.connected; });
+    show_instead([now](const Device& device) { return device.state.connected && !is_silent(device, now); });
   }
   TrackerState out = devices_[shown_].state;
   // Its pose has nothing to do with that of the one before: it comes with an open switch first.
@@ -87,7 +98,7 @@ TrackerState AnyTracker::read(OperatorTime now) noexcept {
   }
   for (Device& device : devices_) {
     device.open = device.state.connected && !held(device.state);
-    if (!device.state.connected) continue;
+    if (!device.state.connected || is_silent(device, now)) continue;
     for (const TrackerButton button : kOfAll)
       if (device.state.buttons.held(button)) out.buttons.set(button);
     if (device.state.joint) out.joint = device.state.joint;

@@ -12,7 +12,7 @@ namespace foresight {
 /// with its switch held. One that goes while it is in charge has gone; another takes another press. From one that says
 /// nothing new (HandWatchOptions::frozen_after), or whose tracked hand does not stir by a single bit (kStill), with its
 /// switch held, another one's press takes over; it then has to let go, as one that held its switch before. Views,
-/// recentring, single joints and the camera listen to all of them. One thread.
+/// recentring, single joints and the camera listen to all of them that still speak. One thread.
 ///
 /// Where another one stands in for one that went while it was in charge, what is read counts, and has the trouble and
 /// cure of the one that went, until that is back or another switch is pressed (TrackerState::stands_in).
@@ -49,8 +49,12 @@ class AnyTracker final : public Tracker {
     OperatorTime stirred;
   };
   static void watch(Device& device, OperatorTime now) noexcept;
+  static bool is_silent(const Device& device, OperatorTime now) noexcept;
   static bool is_frozen(const Device& device, OperatorTime now) noexcept;
   bool take_charge() noexcept;
+  /// Another device, where the one shown does not say so much.
+  template <typename SaysMore>
+  void show_instead(SaysMore says_more) noexcept;
   void heed_loss() noexcept;
 
   std::vector<Device> devices_;

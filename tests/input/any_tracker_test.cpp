@@ -194,5 +194,31 @@ TEST_F(AnyTrackerTest, ViewsListenToAll) {
   EXPECT_EQ(state.pan_rate, 0.5);
 }
 
+TEST_F(AnyTrackerTest, NobodyListensToOneThatIsFrozen) {
+  pad_.state.buttons.set(TrackerButton::home_view);
+  pad_.state.pan_rate = 0.5;
+  EXPECT_EQ(read().pan_rate, 0.5);
+  pad_.says_more = false;
+  for (int i = 0; i < 25; ++i) read();
+  const TrackerState state = read();
+  EXPECT_EQ(state.pan_rate, 0) << "the camera would turn until it came back";
+  EXPECT_FALSE(state.buttons.held(TrackerButton::home_view));
+  pad_.says_more = true;
+  EXPECT_EQ(read().pan_rate, 0.5);
+}
+
+TEST_F(AnyTrackerTest, OneThatIsFrozenMakesNobodyElseOld) {
+  press(pad_, true);
+  read();
+  press(pad_, false);
+  read();
+  pad_.says_more = false;
+  for (int i = 0; i < 25; ++i) read();
+  keys_.state.tilt_rate = -0.5;
+  const TrackerState state = read();
+  EXPECT_EQ(state.time, now_) << "what is as old as the frozen one counts for nothing";
+  EXPECT_EQ(state.tilt_rate, -0.5);
+}
+
 }  // namespace
 }  // namespace foresight::any_tracker_test
