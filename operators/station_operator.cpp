@@ -67,7 +67,7 @@ void StationOperator::go_to(const JointValues& positions) {
 
 OperatorWish StationOperator::tick(RobotTime now, const RobotStatus& status) {
   if (step_ == Step::done) {
-    if (status.gate.state == GateState::idle) return {.quit = true};
+    if (status.gate.state == GateState::idle || status.phase == RobotPhase::stopped) return {.quit = true};
     return command(now, false);
   }
   if (!failure_.empty()) return {.quit = true};

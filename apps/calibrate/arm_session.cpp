@@ -92,15 +92,19 @@ class Session {
       for (const double q : view.joints) table += fmt::format(",{:.7f}", q);
     }
     write_file_atomically(options_.views / "joints.csv", table + "\n");
+    std::error_code none;
+    std::filesystem::remove(unseen_file(), none);  // that a session before left
   }
 
  private:
   void fail(std::string what, std::string cure) { failure_ = std::move(what), cure_ = std::move(cure); }
 
+  std::string unseen_file() const { return without_end_slash(options_.views).string() + "-unseen.png"; }
+
   /// Keeps what the camera saw instead of the board: nobody may be where a screen shows it.
   std::string words_of_unseen() const {
     if (unseen_.empty()) return "";
-    const std::string file = without_end_slash(options_.views).string() + "-unseen.png";
+    const std::string file = unseen_file();
     write_picture(file, unseen_);
     return "; " + file + " is the last picture without the board";
   }

@@ -100,7 +100,9 @@ TEST_F(ArmSession, GoesLooksSolvesAndVerifies) {
                                  "--report",      folder / "arm.html",
                                  "--start"};
   words.insert(words.end(), kStart.begin(), kStart.end());
+  folder.write("arm-views-unseen.png", "of a session before");
   ASSERT_EQ(run_calibrate(words), "0");
+  EXPECT_FALSE(std::filesystem::exists(folder / "arm-views-unseen.png"));
   const auto numbers = json_of(folder, "arm.json");
   EXPECT_EQ(numbers["camera_mount"], "fixed");
   EXPECT_EQ(numbers["views"], 10);

@@ -190,6 +190,17 @@ TEST_F(StationOperatorTest, EndsWhereTheRobotStopsOrMayNotHome) {
   EXPECT_NE(other.failure(), "");
 }
 
+TEST_F(StationOperatorTest, EndsWhereTheRobotStopsAtTheLastStation) {
+  go_on();
+  who_.go_to(at(1));
+  for (int i = 0; i < 60; ++i) tick({&who_});
+  who_.finish();
+  robot_->ask(RobotRequest::emergency_stop);
+  bool goes_on = true;
+  for (int i = 0; i < 1000 && goes_on; ++i) goes_on = tick({&who_});
+  EXPECT_FALSE(goes_on) << "nobody is in charge of a robot that has stopped";
+}
+
 class KeyOperatorTest : public OperatorsTest {
  protected:
   void type(const std::string& keys, int ticks = 1) {
