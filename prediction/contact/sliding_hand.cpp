@@ -235,8 +235,9 @@ bool SlidingHand::advance(const std::vector<double>& change, Look& now) {
   return false;
 }
 
-std::vector<ClosedWay> SlidingHand::closed_ways(const Look& now) {
-  std::vector<ClosedWay> ways;
+SlidingHand::ClosedWays SlidingHand::closed_ways(const Look& now) {
+  ClosedWays out;
+  std::vector<ClosedWay>& ways = out.ways;
   for (const Nearness& n : now.near) {
     if (ways.size() + 4 >= kMostClosedWays) break;  // four for the gate's
     const double least = n.distance > 0 ? kSkin - n.distance : 0;
@@ -248,8 +249,10 @@ std::vector<ClosedWay> SlidingHand::closed_ways(const Look& now) {
   std::ranges::sort(tight);
   tight.resize(std::min<std::size_t>(tight.size(), kMostClosedWays - ways.size()));
   const std::size_t first = ways.size();
-  for (const auto& [margin, couple] : tight)
+  for (const auto& [margin, couple] : tight) {
+    out.of_gate.push_back(couple);
     ways.push_back({JointVector::Zero(static_cast<Eigen::Index>(arm_.size())), std::min(0.0, kDrift - margin)});
+  }
   constexpr double kNudge = 1e-5;
   std::vector<double> nudged = positions_, margins(now.margins.size());
   for (std::size_t j = 0; !tight.empty() && j < arm_.size(); ++j) {
@@ -259,7 +262,7 @@ std::vector<ClosedWay> SlidingHand::closed_ways(const Look& now) {
       ways[first + k].row[static_cast<Eigen::Index>(j)] = (margins[tight[k].second] - tight[k].first) / kNudge;
     nudged[arm_[j]] = positions_[arm_[j]];
   }
-  return ways;
+  return out;
 }
 
 std::string SlidingHand::touch_words(std::size_t couple) const {
@@ -267,12 +270,13 @@ std::string SlidingHand::touch_words(std::size_t couple) const {
 }
 
 // On what the last step leant hardest.
-void SlidingHand::lean(const Look& now, std::span<const ClosedWay> ways) {
+void SlidingHand::lean(const Look& now, const ClosedWays& closed) {
   leans_ = GhostReason::none;
-  const auto hardest = std::ranges::max_element(ways, {}, &ClosedWay::pressed);
-  if (hardest == ways.end() || !(hardest->pressed > 1e-9)) return;
-  const auto index = static_cast<std::size_t>(hardest - ways.begin());
-  if (index < now.near.size() && index + 4 < kMostClosedWays) {
+  const auto hardest = std::ranges::max_element(closed.ways, {}, &ClosedWay::pressed);
+  if (hardest == closed.ways.end() || !(hardest->pressed > 1e-9)) return;
+  const auto index = static_cast<std::size_t>(hardest - closed.ways.begin());
+  const std::size_t of_contact = closed.ways.size() - closed.of_gate.size();
+  if (index < of_contact) {
     const Nearness& n = now.near[index];
     leans_ = GhostReason::contact;
     out_ = now.direction(n);
@@ -280,8 +284,7 @@ void SlidingHand::lean(const Look& now, std::span<const ClosedWay> ways) {
     return;
   }
   leans_ = GhostReason::gate;
-  const auto tightest = std::ranges::min_element(now.margins);
-  words_ = gate_->message(static_cast<std::size_t>(tightest - now.margins.begin()));
+  words_ = gate_->message(closed.of_gate[index - of_contact]);
 }
 
 // What gives way no more.
@@ -314,9 +317,9 @@ void SlidingHand::slide(const Pose& hand, double dt, const JointVector& start, L
       change[i].head<3>() /= goal.length;
       change[i].tail<3>() *= turns;
     }
-    std::vector<ClosedWay> ways = closed_ways(now);
-    const JointVector dq = bounded_step(change, e, kDamping, lower, upper, ways);
-    lean(now, ways);
+    ClosedWays closed = closed_ways(now);
+    const JointVector dq = bounded_step(change, e, kDamping, lower, upper, closed.ways);
+    lean(now, closed);
     if (dq.cwiseAbs().maxCoeff() < kUnmoved) return;
     const std::vector<double> wanted = spread(dq);
     if (go_part(wanted, allowed(now, wanted, kDrift), kLeastShare, now) <= 0) return;

@@ -108,8 +108,12 @@ class SlidingHand {
   double go_part(const std::vector<double>& change, double share, double least, Look& now);
   bool advance(const std::vector<double>& change, Look& now);
   void slide(const Pose& hand, double dt, const JointVector& start, Look& now);
-  std::vector<ClosedWay> closed_ways(const Look& now);
-  void lean(const Look& now, std::span<const ClosedWay> ways);
+  struct ClosedWays {
+    std::vector<ClosedWay> ways;       // of what is near, in its order, then of the gate's couples
+    std::vector<std::size_t> of_gate;  // these
+  };
+  ClosedWays closed_ways(const Look& now);
+  void lean(const Look& now, const ClosedWays& closed);
   void lean_on_pushed(const Look& now);
   void blame(const Look& now);
   std::string touch_words(std::size_t couple) const;
