@@ -195,7 +195,7 @@ std::unique_ptr<link::RobotServer> make_server(const Rig& rig, const Robot& robo
       rig, robot, cameras, link::rig_identity(rig, arguments.rig, FORESIGHT_VERSION), clock, std::move(line));
   clock.sleep_until(clock.now() + link::kAllHeardOf);
   require_alone(server->robot_beside(), arguments.rig);
-  say_robot("serving on domain " + std::to_string(rig.link.domain) + ", interface " + rig.link.interface);
+  say_robot("serving on " + rig.link.place());
   if (const std::string trouble = link::receive_buffer_trouble(); !trouble.empty()) say_robot(trouble);
   return server;
 }

@@ -7,6 +7,7 @@ namespace foresight {
 link::OperatorEndOptions seat_end_options(const Rig& rig, Identity identity, const LiveScene& scene) {
   link::OperatorEndOptions out;
   out.seat.identity = std::move(identity);
+  out.seat.place = rig.link.place();
   out.seat.draw = machine_nonces();
   out.seat.oldest_state = std::max(out.seat.oldest_state, rig.link.round_trip);
   out.seat.answered_within = std::max(out.seat.answered_within, 2 * rig.link.round_trip);

@@ -90,8 +90,10 @@ SeatLine robot_words(const SeatStatus& status) {
   const auto silent = silence(status);
   if (const Difference* other = refusal(status); other && (silent || !status.robot))
     return {"robot", "it is another one, and what it says of itself is not taken", other->cure, Urgency::trouble};
-  if (!status.robot)
-    return {"robot", "nothing is heard of it", "see that its program runs with --serve", Urgency::trouble};
+  if (!status.robot) {
+    const bool looks = status.control.phase == Phase::connecting;
+    return {"robot", "nothing is heard of it", looks ? status.control.cure : "wait for the line", Urgency::trouble};
+  }
   if (silent)
     return {"robot", fmt::format("silent for {:.1f} s", to_seconds(*silent)), "wait for the line", Urgency::trouble};
   const link::RobotState& robot = *status.robot;

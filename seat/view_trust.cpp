@@ -106,7 +106,7 @@ void ViewTrust::frame_tiles() const {
 
 SeatLine fidelity_line(const ViewTrust& trust, const std::string& fault) {
   if (trust.falls_back() && !fault.empty())
-    return {"fidelity", "not known without images that can be used; the newest one is shown", "", Urgency::note};
+    return {"fidelity", "not known without images that can be used", "", Urgency::note};
   if (trust.falls_back())
     return {"fidelity", trust.why(), "the newest image counts until it is better", Urgency::trouble};
   if (!trust.fidelity() || !trust.fidelity()->psnr_db) return {"fidelity", "nothing to compare with yet", ""};

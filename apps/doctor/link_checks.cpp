@@ -8,7 +8,6 @@ namespace foresight::doctor {
 
 Findings check_link(const Rig& rig) {
   const LinkConfig& config = rig.link;
-  const std::string place = "domain " + std::to_string(config.domain) + ", interface " + config.interface;
   // A host has the keys of its own side only, and is not to be given the other's.
   std::vector<link::Role> roles;
   for (const link::Role role : {link::Role::robot, link::Role::operating, link::Role::observer})
@@ -21,7 +20,7 @@ Findings check_link(const Rig& rig) {
     } catch (const std::exception& error) {
       return {{Verdict::bad, "link", error.what(), ""}};
     }
-  return {{Verdict::good, "link", place + who, ""}};
+  return {{Verdict::good, "link", config.place() + who, ""}};
 }
 
 }  // namespace foresight::doctor

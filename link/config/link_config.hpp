@@ -35,6 +35,8 @@ struct LinkConfig {
   std::string where = "link";  ///< "file:line: link", for messages
 
   bool loopback() const { return interface == "lo"; }
+  /// "domain 0, interface lo"
+  std::string place() const { return "domain " + std::to_string(domain) + ", interface " + interface; }
 };
 
 /// Reads `map`, the section. Throws InputError naming file, line and field: unknown keys, numbers out of range, a name

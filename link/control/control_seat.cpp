@@ -288,21 +288,22 @@ ControlSeatStatus ControlSeat::status(OperatorTime now) const {
   const bool agrees = agreed_ != 0 && agreed_ == state_.consent;
   out.follows = sees && lease_ != 0 && agrees && state_.cause == RestCause::none;
   out.must_let_go = held_ && lease_ != 0 && (!agrees || state_.fault == SetPointFault::not_let_go);
-  const auto say = [&out](const char* name, const char* cure) {
+  const auto say = [&out](std::string_view name, std::string_view cure) {
     out.words = name;
     out.cure = cure;
   };
   if (not_understood_.ns != 0 && now - not_understood_ <= options_.answered_within) {
-    say(refusal_text(differences_).c_str(), "");  // it says what to do
+    say(refusal_text(differences_), "");  // it says what to do
   } else if (desk_ == 0) {
-    say("looking for the robot", "see that its program runs with --serve, and that the line is up");
+    const std::string where = options_.place.empty() ? "" : " on " + options_.place;
+    say("looking for the robot", "see that its program runs with --serve" + where + ", and that the line is up");
   } else if (!sees) {
     say("nothing is heard of the robot", "wait for the line");
   } else if (lease_ == 0) {
     say(wanted_ ? "control was asked for" : "connected", wanted_ ? "wait for the answer" : "ask for control");
     // Who is told to ask would be refused: he hears it at once.
     const std::string refused = wanted_ ? refused_ : refusal_text(differences_);
-    if (!refused.empty()) say(refused.c_str(), "");  // it says what to do
+    if (!refused.empty()) say(refused, "");  // it says what to do
   } else if (!out.follows) {
     const ControlWords fault = words_for(state_.fault), cause = words_for(state_.cause);
     const bool presses = held_ && state_.fault != SetPointFault::none;

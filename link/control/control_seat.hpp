@@ -26,6 +26,7 @@ struct ControlSeatOptions {
   Duration oldest_state = std::chrono::seconds(1);
   /// A robot that does not answer for longer is looked for anew.
   Duration answered_within = std::chrono::seconds(2);
+  std::string place;  ///< where the robot is looked for (LinkConfig::place()), for messages; or ""
 };
 
 struct ControlSeatStatus {

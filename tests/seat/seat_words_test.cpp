@@ -241,10 +241,12 @@ TEST(SeatWords, WhoWantsToSeeThePictureIsToldWhatIsNotWell) {
 TEST(SeatWords, BeforeAnythingIsHeardTheRobotIsLookedFor) {
   SeatStatus status;
   status.control.words = "looking for the robot";
+  status.control.cure = "see that its program runs with --serve on domain 3, interface lo";
   EXPECT_EQ(next_step(status).words, "looking for the robot");
   const auto lines = seat_lines(status, {}, "");
   ASSERT_TRUE(find(lines, "robot"));
   EXPECT_EQ(find(lines, "robot")->urgency, Urgency::trouble);
+  EXPECT_EQ(find(lines, "robot")->cure, status.control.cure);
 }
 
 TEST(SeatWords, ARequestThatIsNotFollowedSaysWhy) {
