@@ -68,6 +68,7 @@ std::optional<link::Topic> find_topic(const link::Participant& program, const st
 
 /// What came of one topic.
 struct Measured {
+  Duration taken{0};
   std::uint64_t samples = 0, bytes = 0, strange = 0;
   std::string strangeness;
   std::vector<double> ages_ms, gaps_ms;
@@ -112,7 +113,8 @@ std::string topics_text(std::vector<link::Peer::Endpoint> endpoints) {
 void measure(link::Reader& reader, const link::MessageType* type, Duration length, Measured& out) {
   MonotonicClock clock;
   std::optional<RobotTime> last;
-  for (const RobotTime end = clock.now() + length; clock.now() < end && !stop_requested();) {
+  const RobotTime start = clock.now();
+  for (const RobotTime end = start + length; clock.now() < end && !stop_requested();) {
     reader.wait(kPollEvery);
     const RobotTime now = clock.now();
     reader.take([&](const link::Sample& sample) {
@@ -134,6 +136,7 @@ void measure(link::Reader& reader, const link::MessageType* type, Duration lengt
       last = now;
     });
   }
+  out.taken = clock.now() - start;
 }
 
 }  // namespace
@@ -304,7 +307,7 @@ int link_rate(const LinkRateOptions& options) {
   measure(reader, link::find_message_type(topic->type), seconds(options.seconds), m);
   warn(link::receive_buffer_trouble());
   if (m.samples == 0) return tell_nothing_came(program, reader, *topic);
-  const double length = options.seconds;
+  const double length = to_seconds(m.taken);  // shorter where it was stopped
   std::printf("%s (%s)\n", topic->name.c_str(), link::ros_name(topic->type).c_str());
   std::printf("rate       %.1f messages/s, %.3f Mbit/s\n", static_cast<double>(m.samples) / length,
               8e-6 * static_cast<double>(m.bytes) / length);
