@@ -394,15 +394,18 @@ std::vector<JointWords> Rig::joint_words() const {
   return out;
 }
 
+std::vector<std::string> Rig::urdf_joint_names() const {
+  std::vector<std::string> names = joint_names();
+  for (std::string& name : names)
+    if (!robot || std::ranges::find(robot->joints, name, &UrdfJoint::name) == robot->joints.end()) name.clear();
+  return names;
+}
+
 std::unique_ptr<RobotShape> Rig::shape() const {
   if (!robot) return nullptr;
-  std::vector<std::string> names = joint_names();
   std::vector<bool> jaws;
   for (const RigJoint& joint : joints) jaws.push_back(joint.group == JointGroup::gripper);
-  for (std::string& joint : names)
-    if (std::none_of(robot->joints.begin(), robot->joints.end(), [&](const UrdfJoint& j) { return j.name == joint; }))
-      joint.clear();
-  return std::make_unique<RobotShape>(*robot, std::move(names), T_world_robot, name, std::move(jaws),
+  return std::make_unique<RobotShape>(*robot, urdf_joint_names(), T_world_robot, name, std::move(jaws),
                                       surroundings.clearance);
 }
 

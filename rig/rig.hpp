@@ -71,6 +71,8 @@ struct Rig {
   /// What the safety gate needs of all that.
   GateOptions gate_options() const;
   std::vector<std::string> joint_names() const;
+  /// The same, "" for a joint that is not the URDF's; all of them where there is none.
+  std::vector<std::string> urdf_joint_names() const;
   /// Names and units, for messages.
   std::vector<JointWords> joint_words() const;
   /// The robot's body, or null where the rig has none.

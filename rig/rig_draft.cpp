@@ -101,6 +101,11 @@ std::optional<int> homing_method_of(const std::optional<DriveSheet>& sheet, bool
   return home_inside ? first_of(at_ends) : first_of(inside);
 }
 
+/// Without the last digits that sums leave: a file is read by people.
+double written_plainly(double position) {
+  return std::round(1e9 * position) / 1e9;
+}
+
 void choose_homing(const std::optional<DriveSheet>& sheet, RigJoint& joint) {
   DriveConfig& d = joint.drive;
   const double range = d.max_position - d.min_position;
@@ -111,11 +116,11 @@ void choose_homing(const std::optional<DriveSheet>& sheet, RigJoint& joint) {
   joint.homing_method = *number;
   const auto method = sim::homing_method(*number);
   if (method->input == sim::kNegativeLimit)
-    d.offset = d.min_position + kHomeInside * range;
+    d.offset = written_plainly(d.min_position + kHomeInside * range);
   else if (method->input == sim::kPositiveLimit)
-    d.offset = d.max_position - kHomeInside * range;
+    d.offset = written_plainly(d.max_position - kHomeInside * range);
   else
-    d.offset = zero_inside ? 0 : 0.5 * (d.min_position + d.max_position);
+    d.offset = zero_inside ? 0 : written_plainly(0.5 * (d.min_position + d.max_position));
 }
 
 /// Each drive on the first bus that has room for it.
@@ -324,7 +329,10 @@ RigDraft draft_rig(const RigDraftOptions& options) {
     }
     draft.joints.push_back(std::move(out));
   }
-  if (draft.joints.empty() || draft.joints.size() > kMostJoints)
+  if (draft.joints.empty())
+    throw InputError(options.urdf.string(), "none of its joints moves on its own",
+                     "make those that do revolute, continuous or prismatic, without <mimic>");
+  if (draft.joints.size() > kMostJoints)
     throw InputError(options.urdf.string(), std::to_string(draft.joints.size()) + " of its joints move on their own",
                      "a rig has 1 to " + std::to_string(kMostJoints) + "; make others fixed, or split the robot");
   choose_buses(options.protocol, draft);

@@ -33,7 +33,8 @@ struct RigDraft {
 
 /// Every joint that moves on its own, in the URDF's order; those that follow another and fixed ones have no drive. What
 /// the URDF and the sheet do not tell is chosen as rig_draft.cpp says. Throws InputError naming the joint or the file:
-/// no joint that moves, too many of them, a turning or sliding joint whose limits are none, what read_urdf() refuses.
+/// no joint that moves on its own, too many of them, a turning or sliding joint whose limits are none, what read_urdf()
+/// refuses.
 RigDraft draft_rig(const RigDraftOptions& options);
 
 /// The draft as a rig file at `file`, to which paths are written relative, with comments that give the reasons.

@@ -255,9 +255,11 @@ class RobotBuilder {
       if (!from || !from->mimic || joint.kind == UrdfJoint::Kind::fixed) continue;
       const auto leader = std::find_if(robot_.joints.begin(), robot_.joints.end(),
                                        [&](const UrdfJoint& j) { return j.name == from->mimic->joint_name; });
-      if (leader == robot_.joints.end() || leader->kind == UrdfJoint::Kind::fixed)
+      const bool is_joint = leader != robot_.joints.end();
+      if (!is_joint || leader->kind == UrdfJoint::Kind::fixed)
         throw InputError(file_.string() + ": joint " + in_quotes(joint.name),
-                         "follows " + in_quotes(from->mimic->joint_name) + ", which does not move",
+                         "follows " + in_quotes(from->mimic->joint_name) +
+                             (is_joint ? ", which does not move" : ", which is no joint"),
                          "name a moving joint in <mimic>");
       joint.mimic = {static_cast<int>(leader - robot_.joints.begin()), from->mimic->multiplier, from->mimic->offset};
     }

@@ -14,14 +14,6 @@ constexpr double kOtherJaw = 0.012;  // and the other so near that pressing brin
 constexpr double kOpposite = -0.7;   // cosine between the directions from which they press
 constexpr double kLetGo = 1e-3;      // m or rad that jaws open before what they held is let go
 
-// As Rig::shape() names them: "" for a joint that is not the URDF's.
-std::vector<std::string> urdf_joints(const Rig& rig) {
-  std::vector<std::string> names = rig.joint_names();
-  for (std::string& name : names)
-    if (std::ranges::find(rig.robot->joints, name, &UrdfJoint::name) == rig.robot->joints.end()) name.clear();
-  return names;
-}
-
 std::unique_ptr<RobotShape> gate_of(const Rig& rig) {
   auto out = rig.shape();
   out->surround(rig.surroundings);
@@ -66,13 +58,13 @@ ContactGuard::ContactGuard(const Rig& rig, const HandOptions& hand, std::shared_
     : hand_(hand),
       scene_(std::move(scene)),
       kinematics_(*hand_.arm),
-      model_(*rig.robot, urdf_joints(rig), scene_.get(), rig.T_world_robot, rig.name),
+      model_(*rig.robot, rig.urdf_joint_names(), scene_.get(), rig.T_world_robot, rig.name),
       gate_(gate_of(rig)),
       T_world_base_(rig.T_world_robot),
       tool_(hand_.tip),
       jaw_names_(jaws_of(rig, hand_)) {
   const std::vector<double> anywhere(rig.joints.size(), 0.0);
-  sliding_.emplace(model_, kinematics_, urdf_joints(rig), anywhere, T_world_base_, gate_.get(), rig.name);
+  sliding_.emplace(model_, kinematics_, rig.urdf_joint_names(), anywhere, T_world_base_, gate_.get(), rig.name);
 }
 
 void ContactGuard::may_push(std::span<const std::string> nodes) {

@@ -53,10 +53,7 @@ std::string ghost_words(const HandSight& sight, std::span<const std::string> nam
 HandOverlay::HandOverlay(const Rig& rig, const HandOptions& hand) : rig_(rig), hand_(hand), names_(rig.joint_names()) {
   if (!hand_.arm) return;
   const UrdfRobot& robot = *rig.robot;
-  std::vector<std::string> joints = names_;
-  for (std::string& name : joints)
-    if (std::ranges::find(robot.joints, name, &UrdfJoint::name) == robot.joints.end()) name.clear();
-  links_.emplace(robot, joints, rig.T_world_robot, rig.name);
+  links_.emplace(robot, rig.urdf_joint_names(), rig.T_world_robot, rig.name);
   tool_ = hand_.tip;
   for (std::size_t i = 0; i < robot.links.size(); ++i)
     if (hangs_on(robot, i, tool_) && !robot.body(i).triangles.empty()) gripper_.push_back({i, wire_of(robot.body(i))});

@@ -283,7 +283,7 @@ TEST_F(Urdf, NamesWhatIsWrong) {
       error(link("base") + link("a") + link("b") + joint("j", "fixed", "a", "b") + joint("k", "fixed", "b", "a")),
       says("r.urdf", "hang in a circle", "connect every link to base"));
   EXPECT_THAT(error(link("base") + link("a") + joint("j", "revolute", "base", "a", "<mimic joint='none'/>")),
-              says("joint 'j'", "follows 'none'", "moving joint"));
+              says("joint 'j'", "follows 'none', which is no joint", "moving joint"));
   EXPECT_THAT(error(link("base") + link("a") + joint("j", "revolute", "base", "a", "<mimic joint='j'/>")),
               says("joint 'j'", "in a circle", "remove one"));
   const std::string deep = [] {
