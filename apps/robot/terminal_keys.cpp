@@ -7,8 +7,10 @@ constexpr char kEscape = '\x1b';
 
 char arrow(char final) {
   switch (final) {
-    case 'A': case 'C': return '+';
-    case 'B': case 'D': return '-';
+    case 'A':
+    case 'C': return '+';
+    case 'B':
+    case 'D': return '-';
     default: return 0;
   }
 }
@@ -34,9 +36,7 @@ char TerminalKeys::take(char byte) {
       within_ = byte == '[' ? Within::control_sequence : byte == 'O' ? Within::single_shift : Within::nothing;
       has_parameters_ = false;
       return 0;
-    case Within::single_shift:
-      within_ = Within::nothing;
-      return arrow(byte);
+    case Within::single_shift: within_ = Within::nothing; return arrow(byte);
     case Within::control_sequence:
       if (byte < '@' || byte == '[') {  // Linux' own console sends F1 as ESC [ [ A
         has_parameters_ = true;

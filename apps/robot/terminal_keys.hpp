@@ -6,9 +6,9 @@
 
 namespace foresight {
 
-/// Arrow keys come as '+' (up, right) and '-' (down, left). All else that a terminal sends as an escape sequence (ECMA-48,
-/// 5.4; Delete, F keys, a key with Alt) is no key: its digits and letters are not what somebody pressed. A space is one
-/// wherever it comes: it stops the robot, and no key's sequence has one. One thread.
+/// Arrow keys come as '+' (up, right) and '-' (down, left). All else that a terminal sends as an escape sequence
+/// (ECMA-48, 5.4; Delete, F keys, a key with Alt) is no key: its digits and letters are not what somebody pressed. A
+/// space is one wherever it comes: it stops the robot, and no key's sequence has one. One thread.
 class TerminalKeys {
  public:
   /// Of what came since the last call; sequences may be cut anywhere. An Escape after which nothing has come is over

@@ -18,7 +18,10 @@ TEST(TerminalKeys, WhatIsWithinASequenceIsNoKey) {
   EXPECT_EQ(keys.of("\x1b[15~\x1bOP\x1b[Hr"), "r") << "F5, F1, Home";
   EXPECT_EQ(keys.of("\x1b[[Ar"), "r") << "F1 on a console";
   EXPECT_EQ(keys.of("\x1b[1;5A"), "") << "with Ctrl";
-  EXPECT_EQ(keys.of("\x1b" "ed"), "d") << "Alt and e";
+  EXPECT_EQ(keys.of("\x1b"
+                    "ed"),
+            "d")
+      << "Alt and e";
 }
 
 TEST(TerminalKeys, ASequenceMayBeCutAnywhere) {
