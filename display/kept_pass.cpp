@@ -46,6 +46,7 @@ void KeptPass::choose(const NewestImages& images, const Lens& view, const Pose& 
   const PublishedImage& newest = *images.newest;
   still_ = newest.still.name();
   sharp_ = newest.sharp;
+  white_balance_ = newest.white_balance_of_textures;
   if (places_.size() < count_) places_.resize(count_);
   for (std::size_t i = 0; i < count_; ++i) {
     const PublishedImage& image = *chosen[i].image;
@@ -64,6 +65,7 @@ void KeptPass::operator()(GLuint pixels_image, const std::function<void(const gl
     one.inputs.bind_pixels(pixels_image);
     glBindTextureUnit(kStillUnit, still_);
     program_.set("sharp", sharp_);
+    program_.set("white_balance", white_balance_);
     program_.set("age", static_cast<float>(one.image.age));
     program_.set("claim", one.image.claim);
     draw(program_);

@@ -39,6 +39,7 @@ class KeptPass {
   std::size_t count_ = 0;  // of them are chosen
   GLuint still_ = 0;
   float sharp_ = 1;
+  Eigen::Vector3f white_balance_{1, 1, 1};
 };
 
 }  // namespace foresight

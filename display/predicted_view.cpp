@@ -60,9 +60,11 @@ bool same_place(const Pose& a, const Pose& b) {
   return a.matrix() == b.matrix();
 }
 
-void set_tone(const gl::Program& program, float gain, float sharp, const PublishedTextures& textures) {
+void set_tone(const gl::Program& program, float gain, const Eigen::Vector3f& white_balance, float sharp,
+              const PublishedTextures& textures) {
   if (!program) return;
   program.set("gain", gain);
+  program.set("white_balance", white_balance);
   program.set("sharp", sharp);
   program.set("light_age", textures.light_age);
 }
@@ -176,7 +178,7 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
                              const std::shared_ptr<const SceneLight>& light) {
   start(T_world_camera, state, textures, light, textures.vignetting);
   for (const gl::Program* program : {&all_, &listed_})
-    set_tone(*program, textures.display_gain, textures.sharp, textures);
+    set_tone(*program, textures.display_gain, textures.white_balance, textures.sharp, textures);
   start_part();
   draw_rows([&](Rows rows) {
     if (programs_ == ViewPrograms::single) return dispatch_all(all_, rows);
@@ -205,7 +207,7 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
   }
   const Projection& p = *projection_;
   for (const gl::Program* program : {&p.usual, &p.usual_alone, &p.rest})
-    set_tone(*program, images.newest->gain, textures.sharp, textures);
+    set_tone(*program, images.newest->gain, images.newest->white_balance_of_textures, textures.sharp, textures);
   start_part();
   draw_rows([&](Rows rows) {
     draw_newest(images, rows);
@@ -217,7 +219,7 @@ void PredictedView::draw_lit(const Pose& T_world_camera, const SceneState& state
       reset_samplers_();
     }
     if (before)
-      draw_usual_and_before(*before, images.newest->sharp);
+      draw_usual_and_before(*before, *images.newest);
     else
       draw_usual();
     dispatch(rest_, p.rest);
@@ -265,6 +267,7 @@ void PredictedView::draw_newest(const NewestImages& images, Rows rows) const {
   p.newest_inputs.bind(newest, images.newest->depth_tolerance, kSeenBlock, kSeenUnit);
   p.newest_inputs.bind_pixels(kPixelsImage);
   newest.set("sharp", images.newest->sharp);
+  newest.set("white_balance", images.newest->white_balance);
   if (draws_part_)
     part_->pixels.dispatch(newest);
   else
@@ -281,7 +284,7 @@ void PredictedView::draw_usual() {
 }
 
 /// The same, where the image before shows it from there. Both programs list what is left.
-void PredictedView::draw_usual_and_before(const PublishedImage& before, float sharp) {
+void PredictedView::draw_usual_and_before(const PublishedImage& before, const PublishedImage& newest) {
   Projection& p = *projection_;
   start(p.of_before);
   p.of_before.bind(kBeforeBlock);
@@ -293,7 +296,8 @@ void PredictedView::draw_usual_and_before(const PublishedImage& before, float sh
   rest_.bind();
   p.inputs_before.bind(p.before, before.depth_tolerance, kSeenBlock, kSeenUnit);
   p.inputs_before.bind_pixels(kPixelsImage);
-  p.before.set("sharp", sharp);
+  p.before.set("sharp", newest.sharp);
+  p.before.set("white_balance", newest.white_balance_of_textures);
   p.of_before.dispatch(p.before);
   reset_samplers_();
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);

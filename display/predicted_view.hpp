@@ -142,7 +142,7 @@ class PredictedView {
   void look_up(const NewestImages& images, const PublishedImage* before);
   void draw_newest(const NewestImages& images, Rows rows) const;
   void draw_usual();
-  void draw_usual_and_before(const PublishedImage& before, float sharp);
+  void draw_usual_and_before(const PublishedImage& before, const PublishedImage& newest);
   void start_part() const;
   void list_covered(Rows rows, const gl::Program& by) const;
   template <typename DrawRows>

@@ -46,6 +46,7 @@ void StillEdges::operator()(const PublishedImage& image, const SeenInputs& input
   inputs.bind_pixels(kImagePixels);
   glBindTextureUnit(kDepthUnit, view_depth.name());
   program_.set("sharp", image.sharp);
+  program_.set("white_balance", image.white_balance);
   program_.set("T_view_image", (T_world_view.inverse() * image.image.T_world_camera).matrix().cast<float>().eval());
   const double most = may_be_seen(image, T_world_view) ? parallax(image, T_world_view) : kNothingIsSeen;
   program_.set("parallax", static_cast<float>(most / gl::kNearPlane));

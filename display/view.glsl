@@ -48,7 +48,7 @@ float sharp_for(float finer) {
 uniform float gain;
 layout(binding = 10) uniform samplerBuffer page_ages;  // s; negative: never seen
 uniform float light_age;  // s; of colours that are older it is not known which shadows are in them
-float brightest;  // of what the pixel can show
+vec3 brightest;  // of what the pixel can show
 #define BRIGHTEST brightest
 // What textures hold is no sharper for being seen from nearer, and softer from farther away (sharpness.hpp).
 #define SHARP_FOR(finer) min(sharp, sharp_for(finer))
@@ -77,14 +77,15 @@ const float kUncertain = 1.0 / 255.0;
 // A pixel counts as seen when at least this share of its filter weight lies on seen texels.
 const float kSeenShare = 0.25;
 
-float pixel_rim;   // what the view's own lens leaves of the pixel's value: camera.tone
-vec3 pixel_light;  // and shadows of moving parts
+uniform vec3 white_balance;  // the newest image's, beside what is looked up
+vec3 pixel_tone;             // that, and what the view's own lens leaves of the pixel's value (camera.tone)
+vec3 pixel_light;            // and shadows of moving parts
 
 void find_light(ivec2 pixel) {
-  pixel_rim = exp(log_vignetting(camera.tone, vec2(pixel), camera.size.xy));
-  pixel_light = pixel_rim * imageLoad(light, min(pixel, imageSize(light) - 1)).rgb;
+  pixel_tone = white_balance * exp(log_vignetting(camera.tone, vec2(pixel), camera.size.xy));
+  pixel_light = pixel_tone * imageLoad(light, min(pixel, imageSize(light) - 1)).rgb;
 #if CASES != IMAGE
-  brightest = 1.0 / (gain * pixel_rim);
+  brightest = 1.0 / (gain * pixel_tone);
 #endif
 }
 
@@ -196,7 +197,7 @@ Place place_of(Point point) {
 void choose_light(Place place) {
   ivec2 page = clamp(ivec2(place.texel) >> 4, ivec2(0), place.chart.pages - 1);
   float age = texelFetch(page_ages, place.chart.first_page + page.y * place.chart.pages.x + page.x).r;
-  if (age > light_age) pixel_light = vec3(pixel_rim);
+  if (age > light_age) pixel_light = pixel_tone;
 }
 
 // What textures show of a pixel, beside what images do with a weight.

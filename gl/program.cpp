@@ -168,6 +168,9 @@ void Program::set(const char* uniform, float value) const {
 void Program::set(const char* uniform, const Eigen::Vector2f& v) const {
   glProgramUniform2f(name(), location(*this, uniform), v.x(), v.y());
 }
+void Program::set(const char* uniform, const Eigen::Vector3f& v) const {
+  glProgramUniform3f(name(), location(*this, uniform), v.x(), v.y(), v.z());
+}
 void Program::set(const char* uniform, const Eigen::Vector4f& v) const {
   glProgramUniform4f(name(), location(*this, uniform), v.x(), v.y(), v.z(), v.w());
 }

@@ -48,6 +48,7 @@ class Program : public Handle<delete_program> {
   void set(const char* uniform, unsigned value) const;
   void set(const char* uniform, float value) const;
   void set(const char* uniform, const Eigen::Vector2f& value) const;
+  void set(const char* uniform, const Eigen::Vector3f& value) const;
   void set(const char* uniform, const Eigen::Vector4f& value) const;
   void set(const char* uniform, const Eigen::Vector2i& value) const;
   void set(const char* uniform, const Eigen::Matrix4f& value) const;

@@ -45,8 +45,8 @@ struct PageExposure {
   std::int64_t image = -1;         ///< the last of them; -1: none yet
   int count = 0;                   ///< how many, up to a limit
   bool rough = false;              ///< of a somewhat other area of the surface: to be renewed at once
-  /// ExposureSample's logarithms of red and blue as the left camera saw them last; not numbers: it never did.
-  std::array<float, 2> hue{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
+  std::array<float, 2> hue{0, 0};  ///< ExposureSample's logarithms of red and blue, at the first image's white balance:
+  int hue_count = 0;               ///< means over so many images of the left camera, up to a limit
 };
 
 struct AtlasPage {

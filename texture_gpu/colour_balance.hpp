@@ -19,10 +19,9 @@ class ColourBalance {
   /// is grey.
   cv::Mat apply(const cv::Mat& right);
 
-  /// The left camera has seen these pages so.
-  static void remember(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages);
-  /// Of the right camera's image that was corrected last: what is still left between it and what remember() was told.
-  /// Where fewer than 30 pages can be compared, nothing is learnt. True: that image should be corrected anew.
+  /// Of the right camera's image that was corrected last: what is still left between it and what the left camera has
+  /// seen (PageExposure::hue). Where fewer than 30 pages can be compared, nothing is learnt. True: that image should be
+  /// corrected anew.
   bool learn(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages);
 
   /// Factors on its red and blue; nothing where the cameras are alike, within 3 %.

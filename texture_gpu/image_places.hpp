@@ -21,6 +21,7 @@ struct FrameOnGpu {
   bool lent = false;    ///< `published` says all of its images
   double log_gain = 0;  ///< of the left image (exposure.hpp), as the next
   Eigen::Vector2d vignetting{0, 0};
+  Eigen::Vector3f white_balance{1, 1, 1};   ///< WhiteBalance::factors()
   std::shared_ptr<const SceneLight> light;  ///< whose shadows were taken out of it; null: none were
 
   RobotTime time() const { return images.front().time; }

@@ -115,7 +115,7 @@ Taps gather_sharp_taps(ChartRecord chart, vec2 texel, int level, float finer) {
   add_tap(sum, pages, level, ivec2(nearest.x, first.y + 3), wy.w * inner_x, 0.0);
   float share = SHARP_FOR(finer * (level == 0 ? decode_quality(sum.linear.quality) : 1.0));
   if (sum.least >= (level == 0 ? kSeen : kAllSeen))
-    sum.linear.seen = vec4(clamp(mix(sum.linear.seen.rgb, sum.cubic.rgb / sum.cubic.a, share), 0.0, BRIGHTEST), 1.0);
+    sum.linear.seen = vec4(clamp(mix(sum.linear.seen.rgb, sum.cubic.rgb / sum.cubic.a, share), vec3(0.0), vec3(BRIGHTEST)), 1.0);
   return sum.linear;
 }
 #endif

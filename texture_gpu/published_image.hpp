@@ -13,9 +13,11 @@ namespace foresight {
 /// An image with all that tells which surface points it shows. Written by the texture thread before
 /// it is published, then left alone until no lease is out.
 struct PublishedImage {
-  std::shared_ptr<CameraInput> camera;      ///< pixels, depth and uncertain edges
-  PosedImage image;                         ///< where camera and nodes stood; without the pixels
-  Eigen::Vector3f tone{1, 0, 0};            ///< 1, vignetting a and b (exposure.hpp)
+  std::shared_ptr<CameraInput> camera;  ///< pixels, depth and uncertain edges
+  PosedImage image;                     ///< where camera and nodes stood; without the pixels
+  Eigen::Vector3f tone{1, 0, 0};        ///< 1, vignetting a and b (exposure.hpp)
+  /// WhiteBalance::factors_on_image() and factors(): on red, green and blue.
+  Eigen::Vector3f white_balance{1, 1, 1}, white_balance_of_textures{1, 1, 1};
   float gain = 1;                           ///< factor on textures that shows this image's exposure
   float sharp = 1;                          ///< SharpnessEstimator::cubic_share()
   std::shared_ptr<const SceneLight> light;  ///< as PublishedTextures::light

@@ -28,6 +28,7 @@ struct PublishedTextures {
   std::uint64_t number = 0;                    ///< counts up with each publish
   RobotTime newest_image;                      ///< capture instant of the newest image in it
   float display_gain = 1;                      ///< factor on colours that shows the newest image's exposure
+  Eigen::Vector3f white_balance{1, 1, 1};      ///< likewise, its white balance: on red, green and blue
   Eigen::Vector2f vignetting{0, 0};            ///< of the newest image: a and b (exposure.hpp)
   float sharp = 0.6f;                          ///< share of the cubic filter that suits them (sharpness.hpp)
   gl::BufferTexture table;                     ///< R32UI: colour slot of each page

@@ -165,6 +165,7 @@ void TextureCore::write(const FrameOnGpu& frame, ChartAtlas::Allocation allocati
   next->light_age = frame.light ? static_cast<float>(to_seconds(frame.time() - in_light_since_)) : -1;
   next->display_gain = static_cast<float>(std::exp(frame.log_gain));
   next->vignetting = frame.vignetting.cast<float>();
+  next->white_balance = frame.white_balance;
   generations_.retire(current_, std::move(allocation.retired));
   current_ = next;
   latest.publish(next);
@@ -205,6 +206,8 @@ void TextureCore::publish(LatestImages& latest) {
     if (!out.image.margin_px) out.image.margin_px = options_.margin_px;
     out.tone = {1, static_cast<float>(exposure.vignetting().x()), static_cast<float>(exposure.vignetting().y())};
     out.gain = static_cast<float>(std::exp(exposure.log_gain()));
+    out.white_balance = white_balance_.factors_on_image();
+    out.white_balance_of_textures = white_balance_.factors();
     out.sharp = static_cast<float>(sharpness_.cubic_share());
     out.light = newest_.light;
     out.depth_tolerance = options_.depth_tolerance;
@@ -252,7 +255,9 @@ void TextureCore::look(const PosedFrame& frame) {
   std::swap(newest_, before_);
   places_.place(frame, before_, newest_);
   const std::size_t count = newest_.images.size();
-  newest_.cameras[0]->upload(frame.left.pixels);
+  left_ = frame.left.pixels;
+  const cv::Mat left = options_.even_exposure ? white_balance_.apply(left_) : left_;
+  newest_.cameras[0]->upload(left);
   cv::Mat right;
   if (count > 1) {
     right_ = frame.right->pixels;
@@ -271,13 +276,14 @@ void TextureCore::look(const PosedFrame& frame) {
   newest_.update_inputs(std::vector<Eigen::Vector3f>(count, {1, 0, 0}));
   newest_.log_gain = exposures_[0].log_gain();
   newest_.vignetting = exposures_[0].vignetting();
+  newest_.white_balance = white_balance_.factors();
   if (options_.shadows) {
     if (light_.find_lamp(newest_, options_.depth_tolerance)) mark("lamp");
     const bool rehearses_light = rehearses_ && number_ >= kRehearsedWithoutLight;
     if (light_.take_out_shadows(newest_, rehearses_light, reset_samplers_)) mark("shadows");
   }
   newest_.light = light_.known();
-  right_is_alike_ = still_pass_ && count > 1 && are_alike_in_hue(frame.left.pixels, right);
+  right_is_alike_ = still_pass_ && count > 1 && are_alike_in_hue(left, right);
 }
 
 /// Of the image before, what the newest one shows no more, or less well: views are going to look for it in the
@@ -384,9 +390,10 @@ void TextureCore::estimate_exposure() {
   for (std::size_t i = 0; i < newest_.images.size(); ++i) {
     const auto samples =
         survey_.brightness(newest_.inputs, charts_, store_, records, static_cast<int>(i), options_.depth_tolerance);
+    // Of an image that shadows were taken out of, either correction waits for the next.
+    if (i == 0 && white_balance_.learn(samples, pages) && !newest_.light)
+      newest_.cameras[0]->upload(white_balance_.apply(left_));
     exposures_[i].update(samples, pages, image_);
-    if (i == 0 && newest_.images.size() > 1) ColourBalance::remember(samples, pages);
-    // Of an image that shadows were taken out of, the correction waits for the next.
     if (i == 1 && balance_.learn(samples, pages) && !newest_.light) newest_.cameras[1]->upload(balance_.apply(right_));
     tones.emplace_back(std::exp(-exposures_[i].log_gain()), exposures_[i].vignetting().x(),
                        exposures_[i].vignetting().y());
@@ -394,6 +401,7 @@ void TextureCore::estimate_exposure() {
   newest_.update_inputs(tones);
   newest_.log_gain = exposures_[0].log_gain();
   newest_.vignetting = exposures_[0].vignetting();
+  newest_.white_balance = white_balance_.factors();
 }
 
 void TextureCore::fill_and_finish(const ChartAtlas::Allocation& allocation, PublishedTextures& next) {

@@ -19,6 +19,7 @@
 #include "texture_gpu/page_ages.hpp"
 #include "texture_gpu/still_pass.hpp"
 #include "texture_gpu/survey_pass.hpp"
+#include "texture_gpu/white_balance.hpp"
 
 namespace foresight {
 
@@ -94,8 +95,9 @@ class TextureCore {
   std::unique_ptr<StillPass> still_pass_;                // where images are kept
   std::unique_ptr<AccumulationPass> accumulation_pass_;  // where they are accumulated
   std::vector<ExposureEstimator> exposures_;
+  WhiteBalance white_balance_;  // of the left camera
   ColourBalance balance_;
-  cv::Mat right_;  // the newest right image as it came
+  cv::Mat left_, right_;  // the newest images as they came
   SharpnessEstimator sharpness_;
   std::shared_ptr<const gl::SceneBuffers> buffers_;
   gl::RasterPass raster_;

@@ -17,30 +17,29 @@ Eigen::Vector2i page_grid(const Eigen::Vector2i& texels) {
   return (texels.array() + atlas::kPage - 1) / atlas::kPage;
 }
 
-/// Eight bits, as a display shows it.
-std::uint8_t shown(float value, float gain) {
-  return cv::saturate_cast<std::uint8_t>(255 * gain * value);
+/// BGR of a colour, eight bits, as a display shows it; `tone`: factors on red, green and blue.
+cv::Vec4b shown(const Eigen::Array3f& colour, const Eigen::Array3f& tone, std::uint8_t alpha) {
+  const Eigen::Array3f c = 255 * tone * colour;
+  const auto bits = [&](int channel) { return cv::saturate_cast<std::uint8_t>(c[channel]); };
+  return {bits(2), bits(1), bits(0), alpha};
 }
 
 /// BGRA; all 0 where it has no colour.
-cv::Vec4b shown(atlas::Texel texel, float gain) {
+cv::Vec4b shown(atlas::Texel texel, const Eigen::Array3f& tone) {
   if (texel.code() == 0) return {0, 0, 0, 0};
-  const Eigen::Array3f c = texel.colour();
-  return {shown(c[2], gain), shown(c[1], gain), shown(c[0], gain),
-          texel.code() >= kFirstSeenCode ? view_alpha::kFromImage : view_alpha::kFromFill};
+  return shown(texel.colour(), tone, texel.code() >= kFirstSeenCode ? view_alpha::kFromImage : view_alpha::kFromFill);
 }
 
 /// Means of pages or charts.
-std::vector<cv::Vec4b> read_means(const gl::BufferTexture& buffer, std::size_t count, float gain) {
+std::vector<cv::Vec4b> read_means(const gl::BufferTexture& buffer, std::size_t count, const Eigen::Array3f& tone) {
   cv::Mat halves(1, static_cast<int>(count), CV_16FC4), values;
   if (count == 0) return {};
   buffer.buffer().read(std::span(halves.ptr<std::uint64_t>(), count));
   halves.convertTo(values, CV_32F);
   std::vector<cv::Vec4b> out;
   for (const cv::Vec4f& c : cv::Mat_<cv::Vec4f>(values))
-    out.push_back(c[3] == 0
-                      ? cv::Vec4b(0, 0, 0, view_alpha::kBare)
-                      : cv::Vec4b(shown(c[2], gain), shown(c[1], gain), shown(c[0], gain), view_alpha::kFromFill));
+    out.push_back(c[3] == 0 ? cv::Vec4b(0, 0, 0, view_alpha::kBare)
+                            : shown(Eigen::Array3f(c[0], c[1], c[2]), tone, view_alpha::kFromFill));
   return out;
 }
 
@@ -78,8 +77,9 @@ TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_
   }
   std::vector<std::uint32_t> table(count);
   if (count) textures.table.buffer().read(std::span(table));
-  const auto coarse = read_means(textures.coarse, count, textures.display_gain);
-  means_ = read_means(textures.means, places_.size(), textures.display_gain);
+  const Eigen::Array3f tone = textures.display_gain * textures.white_balance;
+  const auto coarse = read_means(textures.coarse, count, tone);
+  means_ = read_means(textures.means, places_.size(), tone);
   for (std::size_t i = 0; i < count; ++i) pages_.push_back({table[i], coarse[i]});
 
   const gl::Texture& colours = *textures.colours;
@@ -94,8 +94,7 @@ TextureReadback::TextureReadback(const PublishedTextures& textures, std::shared_
                          GL_UNSIGNED_INT_8_8_8_8_REV, static_cast<GLsizei>(texels.size() * sizeof(atlas::Texel)),
                          texels.data());
     pixels.create(colours.height(), colours.width());
-    std::ranges::transform(texels, pixels.begin(),
-                           [&](atlas::Texel texel) { return shown(texel, textures.display_gain); });
+    std::ranges::transform(texels, pixels.begin(), [&](atlas::Texel texel) { return shown(texel, tone); });
   }
   gl::check_errors("reading textures back");
 }

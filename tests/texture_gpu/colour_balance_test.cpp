@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "texture_gpu/white_balance.hpp"
+
 namespace foresight::colour_balance_test {
 namespace {
 
@@ -18,7 +20,7 @@ class Pages {
       seen_.push_back({0.4f, 0, any(random_), any(random_)});
     }
   }
-  void remember() { ColourBalance::remember(seen_, pointers_); }
+  void remember() { WhiteBalance().learn(seen_, pointers_); }
   bool learn(ColourBalance& balance, double red, double blue) {
     std::normal_distribution<float> noise(0, 0.02f);
     std::vector<ExposureSample> samples = seen_;
