@@ -25,8 +25,8 @@ bool can_tell(const ExposureSample& sample) {
   return sample.brightness > kTooDark && !sample.white();
 }
 
-/// The mean over images: replaced by each, the hues of all pages would walk away together. What looks otherwise once may
-/// be a reflection; what goes on to is something else that lies there now.
+/// The mean over images: replaced by each, the hues of all pages would walk away together. What looks otherwise once
+/// may be a reflection; what goes on to is something else that lies there now.
 void remember(PageExposure& page, const Eigen::Vector2d& hue) {
   const Eigen::Vector2d before(page.hue[0], page.hue[1]);
   const bool same = (hue - before).cwiseAbs().maxCoeff() < kSameSurface;

@@ -22,8 +22,8 @@ struct HueDifference {
 /// Nothing where fewer than 30 pages can be compared. `pages`: of the same order; nullptr allowed.
 std::optional<HueDifference> hue_difference(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages);
 
-/// An image, CV_8UC3, whose red and blue are exp(log) times too large, without that; what is white in all channels stays
-/// white. The image itself where it is grey.
+/// An image, CV_8UC3, whose red and blue are exp(log) times too large, without that; what is white in all channels
+/// stays white. The image itself where it is grey.
 cv::Mat balanced(const cv::Mat& image, const Eigen::Vector2d& log);
 
 /// Of one camera. One thread.
@@ -32,8 +32,9 @@ class WhiteBalance {
   /// Corrects an image by what is known so far; the image itself where that is nothing.
   cv::Mat apply(const cv::Mat& image);
 
-  /// Of the image that was corrected last: how it differs from what was seen before; what it shows is remembered (PageExposure::hue).
-  /// A difference counts from 0.4 % and twice its own error on. True: that image should be corrected anew.
+  /// Of the image that was corrected last: how it differs from what was seen before; what it shows is remembered
+  /// (PageExposure::hue). A difference counts from 0.4 % and twice its own error on. True: that image should be
+  /// corrected anew.
   bool learn(std::span<const ExposureSample> samples, std::span<AtlasPage* const> pages);
 
   /// Factors on red, green and blue that show that image's balance: on textures, and on its pixels as they were

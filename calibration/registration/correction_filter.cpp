@@ -42,19 +42,20 @@ Pose CorrectionFilter::add_refined(RobotTime time, const Pose& T_world_camera, c
   const std::size_t at = index_of(time);
   Entry& entry = entries_[at];
   const Vector6d found = correction(entry.given, T_world_camera);
-  for (const auto& [lag, candidates] : entry.predicted) {
-    const Candidates errors = candidates.colwise() - found;
-    Past& past = past_.at(lag);
-    past.products = options_.forgetting * past.products + errors.transpose() * px_metric * errors;
-    past.weight = options_.forgetting * past.weight + 1;
-  }
+  px_metric_ = px_metric;
   mean_square_px_ = options_.forgetting * mean_square_px_ + found.dot(px_metric * found);
   mean_weight_ = options_.forgetting * mean_weight_ + 1;
   ++refined_;
   mean_correction_ += std::max(options_.mean_share, 1.0 / refined_) * (found - mean_correction_);
   entry.found = T_world_camera;
   compare_roughness(at, px_metric);
-  const Vector6d kept = helps() ? Vector6d(found - options_.to_given * mean_correction_) : Vector6d::Zero();
+  const Vector6d kept = share() * (found - options_.to_given * mean_correction_);
+  for (const auto& [lag, candidates] : entry.predicted) {
+    const Candidates errors = candidates.colwise() - (helps() ? kept : found);
+    Past& past = past_.at(lag);
+    past.products = options_.forgetting * past.products + errors.transpose() * px_metric * errors;
+    past.weight = options_.forgetting * past.weight + 1;
+  }
   entry.refined = entry.given * to_motion(kept);
   const Pose out = *entry.refined;
   for (std::size_t i = at; i > options_.memory; --i) entries_.pop_front();
@@ -79,10 +80,6 @@ void CorrectionFilter::compare_roughness(std::size_t at, const Matrix6d& px_metr
   roughness_found_ = options_.forgetting * roughness_found_ + size(found);
   const double factor = trusted_ ? options_.rougher : options_.smoother;
   trusted_ = roughness_found_ <= factor * factor * roughness_given_;
-}
-
-CorrectionFilter::Products CorrectionFilter::prior(const Errors& expected) const {
-  return options_.prior_images * Products(expected.array().square().matrix().asDiagonal());
 }
 
 /// What is known of the camera around the entry `at`, seen from the newest refined pose.
@@ -128,7 +125,7 @@ std::pair<CorrectionFilter::Candidates, CorrectionFilter::Errors> CorrectionFilt
   Errors expected;
   out.col(0).setZero();
   out.col(1) = correction(entries_[newest].given, *entries_[newest].refined);
-  out.col(2) = mean_correction_;
+  out.col(2) = share() * mean_correction_;
   expected.head<kPlain>() << options_.given_px, std::numbers::sqrt2 * options_.given_px, options_.given_px;
   const Track track = this->track(at, newest);
   for (int c = kPlain; c < kCandidates; ++c) {
@@ -138,7 +135,9 @@ std::pair<CorrectionFilter::Candidates, CorrectionFilter::Errors> CorrectionFilt
     const MotionWeights w = motion_weights(model, track.refined_t, track.given_t.head(n), track.wanted);
     const Vector6d motion = track.refined * w.refined + track.given.leftCols(n) * w.given;
     out.col(c) = correction(given, track.origin * to_motion(motion));
-    expected[c] = w.sigma_px;
+    // A correction beyond what given poses err by is the model's own error.
+    const double beyond = out.col(c).dot(px_metric_ * out.col(c)) - options_.given_px * options_.given_px;
+    expected[c] = std::sqrt(w.sigma_px * w.sigma_px + std::max(0.0, beyond));
   }
   return {out, expected};
 }
@@ -172,11 +171,20 @@ CorrectionFilter::Prediction CorrectionFilter::predict(RobotTime time) {
   const int lag = static_cast<int>(at - *newest);
   const auto [all, expected] = candidates(at, *newest);
   entry.predicted[lag] = all;
-  const Past& past = past_.try_emplace(lag, Past{prior(expected), options_.prior_images}).first->second;
-  const Products products = past.products / past.weight;
+  const Past& past = past_[lag];
+  const double unknown = options_.prior_images / (1 + past.weight);
+  const Products claimed = expected.array().square().matrix().asDiagonal();
+  const Products products = (past.products + unknown * claimed) / (past.weight + unknown);
   if (!helps()) return {entry.given, std::sqrt(products(0, 0))};
   const Errors weights = best_weights(products);
   return {entry.given * to_motion(all * weights), std::sqrt(std::max(0.0, weights.dot(products * weights)))};
+}
+
+double CorrectionFilter::share() const {
+  if (!helps()) return 0;
+  const double weight = mean_weight_ + options_.prior_images;
+  const double square = (mean_square_px_ + options_.prior_images * options_.given_px * options_.given_px) / weight;
+  return std::max(0.0, 1 - options_.alignment_px * options_.alignment_px / square);
 }
 
 double CorrectionFilter::gauge_px() const {

@@ -30,11 +30,12 @@
 namespace foresight {
 
 struct CorrectionFilterOptions {
-  double to_given = 0.05;    ///< share of the mean correction that each refined pose gives up; 0 .. 1
-  double mean_share = 0.1;   ///< of the newest correction in the mean one; 0 .. 1
-  double forgetting = 0.95;  ///< weight of past predictions, per image; 0 .. 1
-  double given_px = 2;       ///< expected error of given poses before anything is known
-  double prior_images = 2;   ///< for how many images the expected errors of the predictions count
+  double to_given = 0.05;      ///< share of the mean correction that each refined pose gives up; 0 .. 1
+  double mean_share = 0.1;     ///< of the newest correction in the mean one; 0 .. 1
+  double alignment_px = 0.15;  ///< by which exact poses are corrected, as textures follow what was aligned to them
+  double forgetting = 0.95;    ///< weight of past predictions, per image; 0 .. 1
+  double given_px = 2;         ///< expected error of given poses before anything is known
+  double prior_images = 0.5;   ///< for how many images the expected errors of the predictions count at first
   /// How the camera may move and its given poses may err.
   static constexpr std::size_t kModels = 5;
   std::array<MotionModel, kModels> models = {
@@ -68,6 +69,10 @@ class CorrectionFilter {
   /// Are refined poses in use? True as long as there are too few of them for a doubt.
   bool helps() const { return trusted_; }
 
+  /// Of corrections, so much is used: less where they are hardly larger than those of exact poses would be (the
+  /// positive part of James and Stein's estimator, 1961).
+  double share() const;
+
   /// Uncertainty of the gauge: how far all refined poses together may be off, px.
   double gauge_px() const;
 
@@ -79,8 +84,8 @@ class CorrectionFilter {
   using Errors = Eigen::Matrix<double, kCandidates, 1>;
   struct Track;
   struct Past {
-    Products products;  // sum of the candidates' errors times each other, px^2
-    double weight;
+    Products products = Products::Zero();  // sum of the candidates' errors times each other, px^2
+    double weight = 0;
   };
   struct Entry {
     RobotTime time;
@@ -96,12 +101,12 @@ class CorrectionFilter {
   Track track(std::size_t at, std::size_t newest) const;
   std::pair<Candidates, Errors> candidates(std::size_t at, std::size_t newest) const;
   static Errors best_weights(const Products& products);
-  Products prior(const Errors& expected) const;
 
   CorrectionFilterOptions options_;
   std::deque<Entry> entries_;
   std::map<int, Past> past_;  // by lag
   Vector6d mean_correction_ = Vector6d::Zero();
+  Matrix6d px_metric_ = Matrix6d::Zero();  // of the last image
   double mean_square_px_ = 0, mean_weight_ = 0;
   double refined_ = 0;
   double roughness_given_ = 0, roughness_found_ = 0;  // sums, px^2

@@ -23,8 +23,8 @@ class WhiteBalanceView : public HeadlessTest {
     cv::multiply(out.pixels, cv::Scalar(1 / red, 1, red), out.pixels);
     return out;
   }
-  /// Mean of shown - true of each channel, grey levels, BGR: seen again from where the first image was taken, the newest
-  /// one's white balance is to be shown.
+  /// Mean of shown - true of each channel, grey levels, BGR: seen again from where the first image was taken, the
+  /// newest one's white balance is to be shown.
   cv::Vec3d difference(int images_looked_up, bool even_exposure) {
     LatestTextures textures;
     LatestImages images;

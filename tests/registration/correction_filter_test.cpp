@@ -86,6 +86,24 @@ TEST(CorrectionFilter, DoesNotSpoilExactPoses) {
   EXPECT_LT(follow(swaying, exact, 3).predicted, 0.02);
 }
 
+TEST(CorrectionFilter, TakesTheNoiseOfAlignmentsForNoCorrection) {
+  CorrectionFilter filter{CorrectionFilterOptions{}};
+  double worst_used = 0, worst_predicted = 0;
+  for (int i = 0; i < 120; ++i) {
+    const RobotTime time = RobotTime{} + seconds(i / 30.0);
+    const Pose exact = swaying(i / 30.0);
+    filter.add_given(time, exact);
+    const double predicted = px(exact, filter.predict(time).T_world_camera);
+    const Pose aligned = exact * to_motion(0.05 * to_twist(white(i)));  // 0.1 px
+    const double used = px(exact, filter.add_refined(time, aligned, kMetric));
+    if (i < 60) continue;
+    worst_used = std::max(worst_used, used);
+    worst_predicted = std::max(worst_predicted, predicted);
+  }
+  EXPECT_LT(worst_used, 0.02);
+  EXPECT_LT(worst_predicted, 0.02);
+}
+
 TEST(CorrectionFilter, BridgesOneImageOfASmoothMotion) {
   const Errors errors = follow(swaying, white, 1);
   EXPECT_LT(errors.predicted, 0.1 * errors.given);

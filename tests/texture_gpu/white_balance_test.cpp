@@ -26,8 +26,10 @@ class Pages {
     const Eigen::Vector3f on_image = balance.factors_on_image();
     for (ExposureSample& sample : samples) {
       const bool other = any(random_) + 0.5 < outliers;
-      sample.log_red += static_cast<float>(log.x() - std::log(on_image.x()) + noise(random_) + (other ? any(random_) : 0));
-      sample.log_blue += static_cast<float>(log.y() - std::log(on_image.z()) + noise(random_) + (other ? any(random_) : 0));
+      sample.log_red +=
+          static_cast<float>(log.x() - std::log(on_image.x()) + noise(random_) + (other ? any(random_) : 0));
+      sample.log_blue +=
+          static_cast<float>(log.y() - std::log(on_image.z()) + noise(random_) + (other ? any(random_) : 0));
     }
     return balance.learn(samples, pointers_);
   }
