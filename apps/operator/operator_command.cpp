@@ -306,6 +306,9 @@ void check(const Rig& rig, const Arguments& arguments) {
                      "add --head-display side-by-side; a headset of OpenXR corrects its lenses itself");
   for (const std::string& file : arguments.display_lenses) read_panel_lens(file);  // known before anything is opened
   if (arguments.seed == 0) throw InputError("--seed", "is 0", "give one from 1 on");
+  if (arguments.name.empty())
+    throw InputError("--name", "is empty, and the robot's side shows who is in command",
+                     "give a name, or leave it out");
 }
 
 /// Who gives the robot's address means the right thing, but in another place.

@@ -115,6 +115,7 @@ TEST(Operator, StartedWrongItSaysWhatToDo) {
   EXPECT_THAT(said({"--scripted", "dance"}), testing::HasSubstr("tour"));
   EXPECT_THAT(said({"--head-display", "goggles"}), testing::HasSubstr("side-by-side"));
   EXPECT_THAT(said({"--second-eye", "first"}), testing::HasSubstr("add --head-display openxr"));
+  EXPECT_THAT(said({"--name", ""}), testing::HasSubstr("--name: is empty"));
   EXPECT_THAT(said({"--head-display"}), testing::HasSubstr("its value is missing; give one of openxr, side-by-side"));
   EXPECT_THAT(said({"--head-display", "openxr", "--display-lens", rig_file()}),
               testing::HasSubstr("add --head-display side-by-side"));
