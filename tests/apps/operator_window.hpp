@@ -44,7 +44,9 @@ class VirtualScreen {
       const int null = ::open("/dev/null", O_WRONLY);
       ::dup2(null, 1);
       ::dup2(null, 2);
-      ::execlp("Xvfb", "Xvfb", "-displayfd", "9", "-screen", "0", "1000x700x24", "-nolisten", "tcp", nullptr);
+      // A server that starts anew when its last client leaves turns away whoever comes just then.
+      ::execlp("Xvfb", "Xvfb", "-displayfd", "9", "-screen", "0", "1000x700x24", "-nolisten", "tcp", "-noreset",
+               nullptr);
       ::_exit(1);
     });
     ::close(ends[1]);
