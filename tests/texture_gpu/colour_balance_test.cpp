@@ -3,40 +3,21 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
+#include "tests/texture_gpu/coloured_pages.hpp"
 #include "texture_gpu/white_balance.hpp"
 
 namespace foresight::colour_balance_test {
 namespace {
 
-/// Pages of all colours, which a left camera and a right one see, each colour multiplied in the right one's.
-class Pages {
+/// Pages which a left camera and a right one see, each colour multiplied in the right one's.
+class Pages : public ColouredPages {
  public:
-  explicit Pages(std::size_t count) : pages_(count) {
-    std::uniform_real_distribution<float> any(-0.5f, 0.5f);
-    for (AtlasPage& page : pages_) {
-      pointers_.push_back(&page);
-      seen_.push_back({0.4f, 0, any(random_), any(random_)});
-    }
-  }
-  void remember() { WhiteBalance().learn(seen_, pointers_); }
+  using ColouredPages::ColouredPages;
+  void remember() { WhiteBalance().learn(samples(), pages()); }
   bool learn(ColourBalance& balance, double red, double blue) {
-    std::normal_distribution<float> noise(0, 0.02f);
-    std::vector<ExposureSample> samples = seen_;
     const auto factors = balance.factors().value_or(Eigen::Vector2d(1, 1));
-    for (ExposureSample& sample : samples) {
-      sample.log_red += static_cast<float>(std::log(red * factors.x())) + noise(random_);
-      sample.log_blue += static_cast<float>(std::log(blue * factors.y())) + noise(random_);
-    }
-    return balance.learn(samples, pointers_);
+    return balance.learn(samples(std::log(red * factors.x()), std::log(blue * factors.y())), pages());
   }
-
- private:
-  std::mt19937 random_{3};
-  std::vector<AtlasPage> pages_;
-  std::vector<AtlasPage*> pointers_;
-  std::vector<ExposureSample> seen_;
 };
 
 cv::Mat even(double blue, double green, double red) {

@@ -3,42 +3,20 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include "tests/texture_gpu/coloured_pages.hpp"
 
 namespace foresight::white_balance_test {
 namespace {
 
-/// Pages of all colours, as a camera sees them whose red and blue are exp(log) times as large as at first, and which
-/// WhiteBalance has corrected.
-class Pages {
+/// A camera that shows pages with red and blue exp(log) times as large as at first, corrected by WhiteBalance.
+class Pages : public ColouredPages {
  public:
-  explicit Pages(std::size_t count) : pages_(count) {
-    std::uniform_real_distribution<float> any(-0.5f, 0.5f);
-    for (AtlasPage& page : pages_) {
-      pointers_.push_back(&page);
-      seen_.push_back({0.4f, 0, any(random_), any(random_)});
-    }
-  }
-  bool learn(WhiteBalance& balance, const Eigen::Vector2d& log, double outliers = 0) {
-    std::normal_distribution<double> noise(0, 0.02);
-    std::uniform_real_distribution<double> any(-0.5, 0.5);
-    std::vector<ExposureSample> samples = seen_;
+  using ColouredPages::ColouredPages;
+  bool learn(WhiteBalance& balance, const Eigen::Vector2d& log, float outliers = 0) {
     const Eigen::Vector3f on_image = balance.factors_on_image();
-    for (ExposureSample& sample : samples) {
-      const bool other = any(random_) + 0.5 < outliers;
-      sample.log_red +=
-          static_cast<float>(log.x() - std::log(on_image.x()) + noise(random_) + (other ? any(random_) : 0));
-      sample.log_blue +=
-          static_cast<float>(log.y() - std::log(on_image.z()) + noise(random_) + (other ? any(random_) : 0));
-    }
-    return balance.learn(samples, pointers_);
+    return balance.learn(samples(log.x() - std::log(on_image.x()), log.y() - std::log(on_image.z()), outliers),
+                         pages());
   }
-
- private:
-  std::mt19937 random_{5};
-  std::vector<AtlasPage> pages_;
-  std::vector<AtlasPage*> pointers_;
-  std::vector<ExposureSample> seen_;
 };
 
 const cv::Mat kGrey{4, 4, CV_8UC3, cv::Scalar(100, 100, 100)};
@@ -49,7 +27,7 @@ double error(const WhiteBalance& balance, const Eigen::Vector2d& log) {
 }
 
 TEST(WhiteBalance, FollowsACameraThatChangesItAndDoesNotWalkAway) {
-  for (const double outliers : {0.0, 0.2}) {
+  for (const float outliers : {0.0f, 0.2f}) {
     Pages pages(300);
     WhiteBalance balance;
     double worst = 0;
@@ -73,7 +51,7 @@ TEST(WhiteBalance, LeavesACameraAloneThatKeepsIt) {
   WhiteBalance balance;
   for (int image = 0; image < 300; ++image) {
     EXPECT_EQ(balance.apply(kGrey).data, kGrey.data);
-    EXPECT_FALSE(pages.learn(balance, {0, 0}, 0.2));
+    EXPECT_FALSE(pages.learn(balance, {0, 0}, 0.2f));
     ASSERT_EQ(balance.factors(), Eigen::Vector3f(1, 1, 1)) << "image " << image;
   }
 }
