@@ -103,6 +103,7 @@ nlohmann::json figures(const LineTrialResult& result, double length_s) {
           {"damaged", result.damaged},
           {"early_hand_overs", result.early},
           {"packets", result.packets},
+          {"packets_to_spare", result.spares},
           {"packets_sent_again", result.copies},
           {"encode_ms", nearest_rank(result.encode_ms, 0.5)},
           {"decode_ms", nearest_rank(result.decode_ms, 0.5)}};
@@ -138,7 +139,8 @@ int bench_line(const LineBenchOptions& options) {
               number("down_bytes_per_s") * 1e-3);
   std::printf("  gaps of 1 s and more         %8.0f, worst recovery %.0f ms after 30 kB\n", number("gaps"),
               number("worst_recovery_ms"));
-  std::printf("  packets sent again           %8.0f of %.0f\n", number("packets_sent_again"), number("packets"));
+  std::printf("  packets to spare, again      %8.0f, %.0f of %.0f\n", number("packets_to_spare"),
+              number("packets_sent_again"), number("packets"));
   std::printf("  damaged pictures shown       %8.0f\n", number("damaged"));
   std::printf("  hand-overs too early         %8.0f\n", number("early_hand_overs"));
   std::printf("  CPU time of a pair           %8s ms to encode, %s ms to decode\n", figure("encode_ms", 1).c_str(),

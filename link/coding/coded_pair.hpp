@@ -19,7 +19,7 @@ struct StereoPicture {
 
 enum class Coding : std::uint8_t { jpeg = 1, h264 = 2 };
 
-inline constexpr std::size_t kMostLanes = 4;
+inline constexpr std::size_t kMostLanes = 6;
 inline constexpr std::size_t kLargestCodedPair = 16U << 20;  ///< bytes
 inline constexpr int kLargestPictureSide = 4096;             ///< px
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "common/cpu_time.hpp"
 #include "link/send_control/wire_count.hpp"
@@ -84,7 +85,12 @@ class Trial {
   void send(RobotTime now) {
     for (const Packet& packet : sender_.packets(now, *encoder_)) {
       result.up_bytes += packet.size();
-      result.packets += packet.front() == 'p';
+      const auto parsed = parse_packet(packet);
+      if (const auto* piece = std::get_if<Piece>(&parsed)) {
+        ++result.packets;
+        result.copies += !sent_.insert({piece->pair, piece->index}).second;
+        result.spares += piece->is_spare();
+      }
       const std::size_t before = up_.on_the_way();
       up_.send(now, packet);
       if (up_.on_the_way() > before) wire_.leaves(packet);
@@ -98,7 +104,6 @@ class Trial {
     const double begin = cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
     const CodedPair pair = encoder_->encode(picture, sender_.wish(now));
     result.encode_ms.push_back(1e3 * (cpu_seconds(CLOCK_THREAD_CPUTIME_ID) - begin));
-    pieces_ += (pair.data.size() + kCodedPairHeader + kPieceBytes - 1) / kPieceBytes;
     sender_.hand_over(pair, now);
     if (options_.compare) made_[pair.number] = fingerprint(mirror_->decode(pair).value());
   }
@@ -117,7 +122,6 @@ class Trial {
       const double psnr = luma_psnr_db(picture_(pair.picture.captured), pair.picture);
       result.pairs.push_back({pair.picture.captured, now, pair.bytes, psnr});
     }
-    result.copies = result.packets > pieces_ ? result.packets - pieces_ : 0;
   }
 
   RobotTime next_event(RobotTime now) const {
@@ -138,8 +142,8 @@ class Trial {
   std::unique_ptr<PairDecoder> mirror_;        // beside the encoder, over no line
   std::map<std::uint32_t, std::size_t> made_;  // by number, what that showed
   RobotTime next_capture_{};
-  std::optional<RobotTime> newest_;  // captured and not handed over
-  std::size_t pieces_ = 0;
+  std::optional<RobotTime> newest_;                         // captured and not handed over
+  std::set<std::pair<std::uint32_t, std::uint16_t>> sent_;  // pair and index
 };
 
 /// Of each millisecond, when the newest small packet that came by then was sent over the idle line.

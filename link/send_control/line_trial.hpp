@@ -41,8 +41,8 @@ struct LineTrialResult {
   std::vector<Gap> gaps;
   /// Of each gap: from when the line could have carried kGapBytes after it until a pair captured after it was decoded.
   std::vector<double> recovery_ms;
-  std::size_t up_bytes = 0, down_bytes = 0;  ///< sent, without headers of the network
-  std::size_t packets = 0, copies = 0;       ///< of pieces; sent again
+  std::size_t up_bytes = 0, down_bytes = 0;         ///< sent, without headers of the network
+  std::size_t packets = 0, spares = 0, copies = 0;  ///< of pieces; spare ones among them; sent again
   /// Hand-overs with more unacknowledged than was acknowledged of late (Transmissions::of_late), as WireCount counts
   /// it: 0.
   std::size_t early = 0;

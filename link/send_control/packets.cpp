@@ -4,6 +4,7 @@
 
 #include "link/coding/byte_order.hpp"
 #include "link/coding/coded_pair.hpp"
+#include "link/send_control/erasure_code.hpp"
 
 namespace foresight {
 namespace {
@@ -20,13 +21,13 @@ Parsed parse_piece(ByteReader reader) {
   piece.count = reader.take<std::uint16_t>();
   piece.pair_bytes = reader.take<std::uint32_t>();
   piece.data = reader.rest();
-  if (!reader.good() || piece.pair == 0 || piece.pair_bytes == 0 || piece.index >= piece.count ||
-      piece.pair_bytes > kLargestCodedPair)
+  if (!reader.good() || piece.pair == 0 || piece.pair_bytes == 0 || piece.pair_bytes > kLargestCodedPair ||
+      piece.count != (piece.pair_bytes + kPieceBytes - 1) / kPieceBytes)
     return {};
-  const std::size_t begin = piece.index * kPieceBytes;
-  if (piece.count != (piece.pair_bytes + kPieceBytes - 1) / kPieceBytes ||
-      piece.data.size() != std::min(kPieceBytes, piece.pair_bytes - begin))
-    return {};
+  if (piece.is_spare() && piece.index >= kMostCodedPieces) return {};
+  const std::size_t size = piece.is_spare() ? spare_piece_bytes(piece.pair_bytes)
+                                            : std::min(kPieceBytes, piece.pair_bytes - piece.index * kPieceBytes);
+  if (piece.data.size() != size) return {};
   return piece;
 }
 

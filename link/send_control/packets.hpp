@@ -26,9 +26,12 @@ inline constexpr std::size_t kLargestPacket =
 struct Piece {
   std::uint32_t sequence = 0;
   std::uint32_t pair = 0;
-  std::uint16_t index = 0, count = 0;  ///< index < count
+  std::uint16_t index = 0, count = 0;  ///< of the pair's own pieces; from index `count` on they are spare ones
   std::uint32_t pair_bytes = 0;
-  std::span<const std::uint8_t> data{};  ///< bytes index * kPieceBytes on, kPieceBytes of them but for the last one
+  /// Bytes index * kPieceBytes on, kPieceBytes of them but for the last one; or a spare piece (erasure_code.hpp).
+  std::span<const std::uint8_t> data{};
+
+  bool is_spare() const { return index >= count; }
 };
 inline constexpr std::size_t kPieceHeader = 17;
 inline constexpr std::size_t kPieceBytes = kLargestPacket - kPieceHeader;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "link/send_control/erasure_code.hpp"
+
 namespace foresight {
 namespace {
 
@@ -42,11 +44,26 @@ bool PairReceiver::add(const Piece& piece) {
     assembly.missing = piece.count;
     assembled_bytes_ += piece.pair_bytes;
   }
-  if (assembly.bytes.size() != piece.pair_bytes || assembly.has[piece.index]) return false;
-  assembly.has[piece.index] = true;
-  std::copy(piece.data.begin(), piece.data.end(),
-            assembly.bytes.begin() + static_cast<std::ptrdiff_t>(piece.index * kPieceBytes));
-  return --assembly.missing == 0;
+  if (assembly.bytes.size() != piece.pair_bytes) return false;
+  if (piece.is_spare()) {
+    assembly.spares.emplace(piece.index, std::vector<std::uint8_t>(piece.data.begin(), piece.data.end()));
+  } else {
+    if (assembly.has[piece.index]) return false;
+    assembly.has[piece.index] = true;
+    std::copy(piece.data.begin(), piece.data.end(),
+              assembly.bytes.begin() + static_cast<std::ptrdiff_t>(piece.index * kPieceBytes));
+    --assembly.missing;
+  }
+  if (assembly.missing > assembly.spares.size()) return false;
+  if (assembly.missing > 0) restore(assembly);
+  return true;
+}
+
+void PairReceiver::restore(Assembly& assembly) {
+  std::vector<std::uint16_t> missing;
+  for (std::size_t i = 0; i < assembly.has.size(); ++i)
+    if (!assembly.has[i]) missing.push_back(static_cast<std::uint16_t>(i));
+  restore_pieces(assembly.bytes, missing, assembly.spares);
 }
 
 /// Nothing that a sender says makes this side remember more than a bound; the oldest goes first.

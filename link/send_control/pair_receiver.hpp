@@ -44,9 +44,11 @@ class PairReceiver {
     std::vector<std::uint8_t> bytes;
     std::vector<bool> has;
     std::size_t missing = 0;
+    std::map<std::uint16_t, std::vector<std::uint8_t>> spares;  // fewer than are missing
   };
   bool note(std::uint32_t sequence, RobotTime now);
   bool add(const Piece& piece);
+  static void restore(Assembly& assembly);
   std::vector<ReceivedPair> decode_ready();
   bool never_comes(std::uint32_t pair) const;
   void keep_bounds();

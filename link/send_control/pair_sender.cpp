@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+
+#include "link/send_control/erasure_code.hpp"
 
 namespace foresight {
 namespace {
@@ -16,6 +19,10 @@ constexpr Duration kCalm = std::chrono::milliseconds(150);    // after which wha
 constexpr Duration kOfUse = std::chrono::milliseconds(1000);  // after which a pair that is mostly lost is given up
 constexpr Duration kNeverOfUse = std::chrono::seconds(20);
 constexpr std::size_t kMostPending = 64;
+
+constexpr std::size_t pieces_of(std::size_t pair_bytes) {
+  return std::max<std::size_t>((pair_bytes + kPieceBytes - 1) / kPieceBytes, 1);
+}
 
 }  // namespace
 
@@ -52,7 +59,7 @@ double PairSender::bytes_per_s(RobotTime now) const {
 
 int PairSender::pairs_on_the_way() const {
   return static_cast<int>(
-      std::count_if(pending_.begin(), pending_.end(), [](const auto& entry) { return entry.second.missing > 0; }));
+      std::count_if(pending_.begin(), pending_.end(), [](const auto& entry) { return !entry.second.is_whole(); }));
 }
 
 bool PairSender::wants_pair(RobotTime now) const {
@@ -67,43 +74,57 @@ bool PairSender::wants_pair(RobotTime now) const {
 
 PairWish PairSender::wish(RobotTime now) const {
   const double rate = bytes_per_s(now);
-  const bool lossy = transmissions_.lost_lately(now);
   const bool far = is_far();
   const double shortest = far ? options_.shortest_far_s : options_.shortest_s;
   const double longest = far ? options_.longest_far_s : options_.longest_s;
   const auto fine = static_cast<double>(far ? options_.fine_far_bytes : options_.fine_bytes);
   const double time = std::clamp(fine / rate, shortest, longest);
-  const std::size_t most = lossy ? std::min(options_.most_lossy_bytes, options_.most_bytes) : options_.most_bytes;
-  const auto bytes = static_cast<std::size_t>(std::min(rate * time, static_cast<double>(most)));
-  return {.number = last_number_ + 1, .bytes = std::max(bytes, options_.least_bytes), .only_what_arrived = lossy};
+  const auto bytes = static_cast<std::size_t>(std::min(rate * time, static_cast<double>(options_.most_bytes)));
+  return {.number = last_number_ + 1,
+          .bytes = std::max(bytes, options_.least_bytes),
+          .only_what_arrived = transmissions_.lost_lately(now)};
 }
 
 void PairSender::hand_over(const CodedPair& pair, RobotTime now) {
-  Pending pending{.reference = pair.reference, .handed_over = now, .bytes = to_bytes(pair), .arrived = {}};
-  pending.missing = (pending.bytes.size() + kPieceBytes - 1) / kPieceBytes;
-  pending.arrived.resize(pending.missing);
-  for (std::size_t i = 0; i < pending.missing; ++i) fresh_.emplace_back(pair.number, static_cast<std::uint16_t>(i));
+  Pending pending{.reference = pair.reference, .handed_over = now, .bytes = to_bytes(pair), .spares = {}, .pieces = {}};
+  pending.own = pieces_of(pending.bytes.size());
+  const std::size_t spares = redundancy_.spares(pending.own, road_s());
+  pending.spares = spare_pieces(pending.bytes, spares);
+  pending.pieces.resize(pending.own + spares);
+  for (std::size_t i = 0; i < pending.pieces.size(); ++i)
+    fresh_.emplace_back(pair.number, static_cast<std::uint16_t>(i));
+  redundancy_.sent(pair.number, pending.pieces.size());
   last_number_ = std::max(last_number_, pair.number);
   pending_.insert_or_assign(pair.number, std::move(pending));
 }
 
 void PairSender::send_piece(std::uint32_t pair, std::uint16_t index, RobotTime now, std::vector<Packet>& out) {
   const auto found = pending_.find(pair);
-  if (found == pending_.end() || found->second.arrived[index]) return;
-  const std::vector<std::uint8_t>& bytes = found->second.bytes;
-  const std::size_t begin = index * kPieceBytes, size = std::min(kPieceBytes, bytes.size() - begin);
-  Piece piece{.sequence = transmissions_.send(pair, index, kPieceHeader + size, now), .pair = pair, .index = index};
-  piece.count = static_cast<std::uint16_t>(found->second.arrived.size());
-  piece.pair_bytes = static_cast<std::uint32_t>(bytes.size());
-  piece.data = std::span(bytes).subspan(begin, size);
+  if (found == pending_.end() || found->second.pieces[index] != Pending::Is::here) return;
+  Pending& pending = found->second;
+  Piece piece{.pair = pair, .index = index, .data = pending.piece(index)};
+  piece.sequence = transmissions_.send(pair, index, kPieceHeader + piece.data.size(), now);
+  piece.count = static_cast<std::uint16_t>(pending.own);
+  piece.pair_bytes = static_cast<std::uint32_t>(pending.bytes.size());
   out.push_back(to_packet(piece));
+  pending.pieces[index] = Pending::Is::on_the_way;
+  ++pending.on_the_way;
+}
+
+std::span<const std::uint8_t> PairSender::Pending::piece(std::uint16_t index) const {
+  if (index >= own) {
+    const std::size_t size = spare_piece_bytes(bytes.size());
+    return std::span(spares).subspan((index - own) * size, size);
+  }
+  const std::size_t begin = index * kPieceBytes;
+  return std::span(bytes).subspan(begin, std::min(kPieceBytes, bytes.size() - begin));
 }
 
 // A pair goes on to be sent as long as a lane builds on it, which is cheaper to repair than to begin anew. Only where
 // it is old and mostly lost, as after an outage, a fresh picture is the better use of the line.
-bool PairSender::worth_sending(const Pending& pending, std::size_t lost, RobotTime now) const {
+bool PairSender::worth_sending(const Pending& pending, RobotTime now) const {
   const Duration age = now - pending.handed_over;
-  return age < kOfUse || (age < kNeverOfUse && 2 * lost < pending.arrived.size());
+  return age < kOfUse || (age < kNeverOfUse && 2 * pending.needed() < pending.own);
 }
 
 void PairSender::give_up(std::uint32_t pair, PairFates& fates) {
@@ -119,18 +140,19 @@ void PairSender::take(std::span<const std::uint8_t> packet, RobotTime now, PairF
   const auto* acknowledgement = std::get_if<Acknowledgement>(&parsed);
   if (!acknowledgement) return;
   for (const Transmissions::Sent& sent : transmissions_.acknowledge(*acknowledgement, now)) {
-    const auto pending = pending_.find(sent.pair);
-    if (pending == pending_.end() || pending->second.arrived[sent.index]) continue;
-    pending->second.arrived[sent.index] = true;
-    --pending->second.missing;
+    redundancy_.came(sent.pair);
+    const auto found = pending_.find(sent.pair);
+    if (found == pending_.end()) continue;
+    Pending& pending = found->second;
+    Pending::Is& piece = pending.pieces[sent.index];
+    if (piece == Pending::Is::on_the_way) --pending.on_the_way;
+    if (piece != Pending::Is::arrived) ++pending.arrived;
+    piece = Pending::Is::arrived;
   }
   for (const std::uint32_t pair : acknowledgement->decoded) {
     if (pair > last_number_) continue;
     fates.arrived(pair);
-    const auto pending = pending_.find(pair);
-    if (pending == pending_.end()) continue;
-    if (!shown_ || pending->second.handed_over > *shown_) shown_ = pending->second.handed_over;
-    pending_.erase(pending);
+    pending_.erase(pair);
   }
   if (acknowledgement->undecodable > last_undecodable_ && acknowledgement->undecodable <= last_number_) {
     last_undecodable_ = acknowledgement->undecodable;
@@ -138,19 +160,35 @@ void PairSender::take(std::span<const std::uint8_t> packet, RobotTime now, PairF
   }
 }
 
+/// With spare ones, as these may get lost, too.
+void PairSender::send_again(std::uint32_t number, const Pending& pending, RobotTime now, std::vector<Packet>& out) {
+  std::size_t left = pending.needed() + redundancy_.spares(pending.needed(), road_s());
+  for (std::uint16_t index = 0; index < pending.pieces.size() && left > 0; ++index) {
+    if (pending.pieces[index] != Pending::Is::here) continue;
+    send_piece(number, index, now, out);
+    --left;
+  }
+}
+
 std::vector<Packet> PairSender::packets(RobotTime now, PairFates& fates) {
   std::vector<Packet> out;
-  std::map<std::uint32_t, std::vector<std::uint16_t>> lost;
-  for (const Transmissions::Sent& sent : transmissions_.lost(now))
-    if (sent.pair != 0) lost[sent.pair].push_back(sent.index);
-  for (const auto& [pair, pieces] : lost) {
-    const auto pending = pending_.find(pair);
-    if (pending == pending_.end()) continue;
-    if (!worth_sending(pending->second, pieces.size(), now)) {
+  std::set<std::uint32_t> incomplete;
+  for (const Transmissions::Sent& sent : transmissions_.lost(now)) {
+    redundancy_.lost(sent.pair);
+    const auto found = pending_.find(sent.pair);
+    if (found == pending_.end() || found->second.pieces[sent.index] != Pending::Is::on_the_way) continue;
+    found->second.pieces[sent.index] = Pending::Is::here;
+    --found->second.on_the_way;
+    if (found->second.needed() > 0) incomplete.insert(sent.pair);
+  }
+  for (const std::uint32_t pair : incomplete) {
+    const auto found = pending_.find(pair);
+    if (found == pending_.end()) continue;  // given up with another
+    if (worth_sending(found->second, now)) {
+      send_again(pair, found->second, now, out);
+    } else {
       give_up(pair, fates);
-      continue;
     }
-    for (const std::uint16_t index : pieces) send_piece(pair, index, now, out);
   }
   for (const auto& [pair, index] : fresh_) send_piece(pair, index, now, out);
   fresh_.clear();

@@ -11,14 +11,17 @@
 //                     its way when the line gets slower, and what is lost of quality comes back with the next pairs.
 //                     Where the road is long, every picture is old, and who looks at predictions has more of fewer and
 //                     sharper ones (decision 49): then in a tenth of a second and a bit
+//   spare pieces      as many as pay (Redundancy): what is lost of a pair does not cost it a round trip
 //
 // Pure logic; one thread.
 #pragma once
 
+#include <algorithm>
 #include <map>
 
 #include "link/coding/coded_pair.hpp"
 #include "link/coding/pair_coder.hpp"
+#include "link/send_control/redundancy.hpp"
 #include "link/send_control/transmissions.hpp"
 
 namespace foresight {
@@ -26,16 +29,15 @@ namespace foresight {
 class PairSender {
  public:
   struct Options {
-    double first_bytes_per_s = 100'000;     ///< until the line was measured
-    double shortest_s = 0.025;              ///< of line time for a pair
-    double shortest_far_s = 0.010;          ///< on a long road, where what is on the way waits for long when it must
-    double longest_s = 0.060;               ///< where the line is so thin that pictures would suffer
-    double longest_far_s = 0.120;           ///< likewise on a long road
-    std::size_t fine_bytes = 9'000;         ///< what a pair needs to look well; takes up to longest_s
-    std::size_t fine_far_bytes = 20'000;    ///< what makes it a good texture; takes up to longest_far_s
-    std::size_t least_bytes = 1'000;        ///< however thin the line; one packet, though pairs take a sixth more
-    std::size_t most_bytes = 40'000;        ///< more shows little but the sensor's noise
-    std::size_t most_lossy_bytes = 24'000;  ///< while packets get lost: the more pieces, the likelier one is missing
+    double first_bytes_per_s = 100'000;   ///< until the line was measured
+    double shortest_s = 0.025;            ///< of line time for a pair
+    double shortest_far_s = 0.010;        ///< on a long road, where what is on the way waits for long when it must
+    double longest_s = 0.060;             ///< where the line is so thin that pictures would suffer
+    double longest_far_s = 0.120;         ///< likewise on a long road
+    std::size_t fine_bytes = 9'000;       ///< what a pair needs to look well; takes up to longest_s
+    std::size_t fine_far_bytes = 20'000;  ///< what makes it a good texture; takes up to longest_far_s
+    std::size_t least_bytes = 1'000;      ///< however thin the line; one packet, though pairs take a sixth more
+    std::size_t most_bytes = 40'000;      ///< more shows little but the sensor's noise
     int most_on_the_way = static_cast<int>(kMostLanes);  ///< pairs, while packets get lost
   };
 
@@ -67,22 +69,29 @@ class PairSender {
   double road_s() const;  // there and back
   bool is_far() const;
   struct Pending {
+    std::span<const std::uint8_t> piece(std::uint16_t index) const;
+    bool is_whole() const { return arrived >= own; }
+    std::size_t needed() const { return own - std::min(own, arrived + on_the_way); }  // besides those on the way
+
+    enum class Is : std::uint8_t { here, on_the_way, arrived };
     std::uint32_t reference = 0;
     RobotTime handed_over;
-    std::vector<std::uint8_t> bytes;
-    std::vector<bool> arrived;
-    std::size_t missing = 0;
+    std::vector<std::uint8_t> bytes, spares;
+    std::size_t own = 0;  // pieces; any as many of `pieces` make the pair
+    std::vector<Is> pieces;
+    std::size_t arrived = 0, on_the_way = 0;
   };
   void send_piece(std::uint32_t pair, std::uint16_t index, RobotTime now, std::vector<Packet>& out);
+  void send_again(std::uint32_t number, const Pending& pending, RobotTime now, std::vector<Packet>& out);
   void give_up(std::uint32_t pair, PairFates& fates);
-  bool worth_sending(const Pending& pending, std::size_t lost, RobotTime now) const;
+  bool worth_sending(const Pending& pending, RobotTime now) const;
   int pairs_on_the_way() const;
 
   Options options_;
   Transmissions transmissions_;
+  Redundancy redundancy_;
   std::map<std::uint32_t, Pending> pending_;
   std::vector<std::pair<std::uint32_t, std::uint16_t>> fresh_;  // pieces never sent
-  std::optional<RobotTime> shown_;  // when the newest pair that was decoded had been handed over
   std::uint32_t last_number_ = 0, last_undecodable_ = 0;
 };
 

@@ -33,6 +33,11 @@ StereoPicture grey_pixel(RobotTime time) {
   return {.left = cv::Mat(1, 1, CV_8UC1, cv::Scalar(128)), .captured = time};
 }
 
+void with_model_coder(LineTrialOptions& options) {
+  options.encoder = [] { return std::make_unique<ModelPairEncoder>(); };
+  options.decoder = [] { return std::make_unique<ModelPairDecoder>(); };
+}
+
 bool long_tests() {
   return std::getenv("FORESIGHT_LONG") != nullptr;
 }
@@ -133,6 +138,23 @@ TEST(LineTrial, LossCostsTimeAndNeverShowsADamagedPicture) {
   }
 }
 
+// 250 ms each way: what is lost is not waited for.
+TEST(LineTrial, LossOnALongRoadCostsFewRoundTrips) {
+  LineTrialOptions options;
+  options.length = seconds(60);
+  options.compare = false;
+  options.line.seed = 3;
+  options.line.up = {.delay = milliseconds(250), .loss = 0.05, .bytes_per_s = 1'000'000};
+  options.line.down = options.line.up;
+  with_model_coder(options);
+  const LineTrialResult result = run_line_trial(options, grey_pixel);
+  EXPECT_GT(result.spares, result.packets / 20);
+  EXPECT_LT(result.copies, result.packets / 100) << "one in twenty was lost";
+  EXPECT_LT(quantile(result.age_beyond_ms, 0.75), 250) << "which is what a repair takes at the least";
+  EXPECT_GT(pairs_per_s(result, options), 8);
+  EXPECT_EQ(result.early, 0U);
+}
+
 // Lines that nobody recorded, with a model of the coder (its sizes and lanes): walking, driving, tunnels, fades, loss.
 TEST(LineTrial, PicturesStayRecentOnLinesOfAllKinds) {
   const unsigned seeds = long_tests() ? 40 : 2;
@@ -141,8 +163,7 @@ TEST(LineTrial, PicturesStayRecentOnLinesOfAllKinds) {
     for (const SyntheticLine& line : synthetic_lines(seed)) {
       SCOPED_TRACE(line.name + ", seed " + std::to_string(seed));
       LineTrialOptions options{.line = line.line, .length = seconds(60), .compare = false};
-      options.encoder = [] { return std::make_unique<ModelPairEncoder>(); };
-      options.decoder = [] { return std::make_unique<ModelPairDecoder>(); };
+      with_model_coder(options);
       const LineTrialResult result = run_line_trial(options, grey_pixel);
       std::vector<double> ages, bytes;
       for (std::size_t i = 0; i < result.age_beyond_ms.size(); ++i)

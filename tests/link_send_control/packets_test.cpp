@@ -49,7 +49,10 @@ TEST(Packets, RefusePiecesThatDoNotFitTheirPair) {
   };
   EXPECT_FALSE(refused({.pair = 1, .index = 0, .count = 1, .pair_bytes = 100}));
   EXPECT_TRUE(refused({.pair = 0, .index = 0, .count = 1, .pair_bytes = 100}));
-  EXPECT_TRUE(refused({.pair = 1, .index = 1, .count = 1, .pair_bytes = 100}));
+  EXPECT_FALSE(refused({.pair = 1, .index = 1, .count = 1, .pair_bytes = 100})) << "a spare piece";
+  EXPECT_FALSE(refused({.pair = 1, .index = 254, .count = 1, .pair_bytes = 100}));
+  EXPECT_TRUE(refused({.pair = 1, .index = 255, .count = 1, .pair_bytes = 100}));
+  EXPECT_TRUE(refused({.pair = 1, .index = 2, .count = 2, .pair_bytes = kPieceBytes + 100}));
   EXPECT_TRUE(refused({.pair = 1, .index = 0, .count = 2, .pair_bytes = 100}));
   EXPECT_TRUE(refused({.pair = 1, .index = 0, .count = 1, .pair_bytes = 101}));
   EXPECT_TRUE(refused({.pair = 1, .index = 0, .count = 1, .pair_bytes = 0}));
@@ -62,6 +65,7 @@ TEST(Packets, AnyBytesAreTakenWithoutHarm) {
   const std::vector<std::uint8_t> data(kPieceBytes, 5);
   const std::vector<Packet> right = {
       to_packet({.sequence = 3, .pair = 4, .index = 1, .count = 3, .pair_bytes = 3000, .data = data}),
+      to_packet({.sequence = 4, .pair = 4, .index = 5, .count = 3, .pair_bytes = 3000, .data = data}),
       to_packet(Question{5}), to_packet(some_acknowledgement())};
   PairReceiver receiver(make_pair_decoder());
   PairSender sender;
