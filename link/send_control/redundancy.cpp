@@ -45,8 +45,8 @@ std::size_t Redundancy::spares(std::size_t pieces, double round_trip_s) const {
   double least = 0;
   for (std::size_t spares = 0; spares <= pieces / 2 + pieces % 2 && pieces + spares <= kMostCodedPieces; ++spares) {
     const double share = static_cast<double>(spares) / static_cast<double>(pieces + spares);
-    const auto missed = std::count_if(lost_shares_.begin(), lost_shares_.end(),
-                                      [share](double lost) { return lost > share + 1e-9; });
+    const auto missed =
+        std::count_if(lost_shares_.begin(), lost_shares_.end(), [share](double lost) { return lost > share + 1e-9; });
     const double cost = share + kWorth * round_trip_s * static_cast<double>(missed) / known;
     if (spares == 0 || cost < least) {
       best = spares;

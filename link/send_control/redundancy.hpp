@@ -1,8 +1,8 @@
 // How many pieces beyond its own a pair is sent with: as many as pay, by what became of pairs of late.
 //
 // A pair that misses more pieces than it has to spare comes a round trip later; what is spared takes from the picture.
-// Losses come singly or in rows: so nothing is assumed of them but that the next pairs lose such shares as the last ones
-// did, and what is minimised over the number of spares is
+// Losses come singly or in rows: so nothing is assumed of them but that the next pairs lose such shares as the last
+// ones did, and what is minimised over the number of spares is
 //
 //   spares / (pieces + spares)  +  worth * round trip * share of the last pairs that would miss more
 //

@@ -167,7 +167,7 @@ double SlidingHand::allowed(const Look& now, std::span<const double> change, dou
       share = std::min(share, (n.distance - kSkin) / way);
       continue;
     }
-    const double after = n.distance > 0 ? 0.7 * std::min(n.distance, kSkin) : kSkin;
+    const double after = n.distance > kLeastSkin ? 0.7 * std::min(n.distance, kSkin) : kSkin;
     share = std::min(share, 0.9 * (n.distance + after) / way);
     const std::vector<double> row = model_.change_of(n, now.direction(n));
     double nearing = 0;
@@ -178,13 +178,16 @@ double SlidingHand::allowed(const Look& now, std::span<const double> change, dou
 }
 
 // Did nothing meet on the way? A point that met a surface came from `before`'s distance and went on to `after`'s: its
-// way was no shorter than both together.
+// way was no shorter than both together. Parts closer than the arm ever goes came to it, as what was grasped off a
+// table: by that rule they could not part again. They do not get nearer (`allowed`), and no part of a way passes a
+// skin.
 bool SlidingHand::clear(const Look& before, const Look& after, std::span<const double> change) const {
   for (const auto* look : {&before, &after})
     for (const Nearness& n : look->near) {
       const double from = before.distance(n.couple), to = after.distance(n.couple);  // or at least so much
       if (from > 0) {
-        if (to < std::min(from, kLeastSkin) || model_.farthest(n.couple, change) >= from + to) return false;
+        if (to < std::min(from, kLeastSkin)) return false;
+        if (from > kLeastSkin && model_.farthest(n.couple, change) >= from + to) return false;
       } else if (to <= 0) {
         const Penetration& deep = after.deep.at(n.couple);
         const auto may = depths_.find(n.couple);

@@ -315,6 +315,37 @@ TEST(SlidingHand, WhatCameIntoTheArmIsLeftButNotEnteredDeeper) {
   EXPECT_FALSE(step.ghost.shown);
 }
 
+// As what was grasped off a table: nearer than the arm itself would ever go, and not in it.
+TEST(SlidingHand, WhatCameToAHairsBreadthOfTheArmIsLeft) {
+  constexpr double kSlow = 0.25;  // s: a picture of a busy machine, in which joints go far
+  const SceneModel scene = made_scene({{"box", make_box({0.2, 0.2, 0.02}), shifted(0, 0, -1)}});
+  for (const double gap : {1e-7, 1e-5, 1.5e-4}) {
+    LabArm arm(&scene, {0, 0.9, 0, 1.2, 0, 0.3, 0, 0.02});
+    Pose box = shifted(0, 0, -1);
+    const auto go = [&](const Pose& hand, double dt) {
+      return arm.hand.step(hand, arm.hand.positions(), std::vector<Pose>{box}, dt);
+    };
+    const Pose start = go(Pose::Identity(), 1e-9).T_base_tip;
+    box.translation() = start.translation() - Vector3d(0, 0, 0.5);
+    const auto to_box = [&] {
+      const HandStep step = go(start, 1e-9);
+      const auto near =
+          std::ranges::find(step.near, "box", [&](const Nearness& n) { return arm.model.other_name(n.couple); });
+      return near == step.near.end() ? kContactReach : near->distance;
+    };
+    while (to_box() == kContactReach) box.translation().z() += 0.01;
+    box.translation().z() += to_box() - gap;
+    ASSERT_NEAR(to_box(), gap, 1e-8);
+    HandStep step;
+    for (int i = 1; i <= 10; ++i) step = go(shifted(0.006 * i, 0, 0.012 * i) * start, kSlow);
+    const Vector3d gone = step.T_base_tip.translation() - start.translation();
+    EXPECT_LT((gone - Vector3d(0.06, 0, 0.12)).norm(), 1e-6) << gap;
+    for (int i = 1; i <= 20; ++i) go(shifted(0, 0, -0.5) * start, kSlow);
+    EXPECT_GT(to_box(), kLeastSkin) << "and is not gone into";
+    EXPECT_LT(to_box(), 2 * kSkin);
+  }
+}
+
 TEST(SlidingHand, AStraightWayOfJointsEndsAtContact) {
   const SceneModel scene = table();
   Gantry gantry(&scene);

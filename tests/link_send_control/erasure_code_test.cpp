@@ -14,8 +14,8 @@ using Bytes = std::vector<std::uint8_t>;
 
 TEST(ErasureCode, AnyAsManyPiecesAsThereAreOwnOnesAreEnough) {
   std::mt19937 random(7);
-  for (const std::size_t size : {std::size_t{1}, std::size_t{700}, kPieceBytes, kPieceBytes + 1, 20 * kPieceBytes + 7,
-                                 160 * kPieceBytes}) {
+  for (const std::size_t size :
+       {std::size_t{1}, std::size_t{700}, kPieceBytes, kPieceBytes + 1, 20 * kPieceBytes + 7, 160 * kPieceBytes}) {
     Bytes pair(size);
     std::generate(pair.begin(), pair.end(), [&] { return static_cast<std::uint8_t>(random()); });
     const auto own = static_cast<std::uint16_t>((size + kPieceBytes - 1) / kPieceBytes);
