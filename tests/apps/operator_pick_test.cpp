@@ -109,7 +109,8 @@ class OperatorPicks : public OperatorWindow {
       hold(key, false);
       hold("ctrl", false);
     }
-    return testing::AssertionFailure() << "holding " << key << " did not do it:\n"
+    return testing::AssertionFailure() << "holding " << key << " did not do it; the tool is " << height()
+                                       << " m above where it grasps, the jaws are at " << jaws() << " m:\n"
                                        << seat_->said() << "\nrobot:\n"
                                        << robot_->said();
   }

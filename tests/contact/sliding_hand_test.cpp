@@ -319,7 +319,7 @@ TEST(SlidingHand, WhatCameIntoTheArmIsLeftButNotEnteredDeeper) {
 TEST(SlidingHand, WhatCameToAHairsBreadthOfTheArmIsLeft) {
   constexpr double kSlow = 0.25;  // s: a picture of a busy machine, in which joints go far
   const SceneModel scene = made_scene({{"box", make_box({0.2, 0.2, 0.02}), shifted(0, 0, -1)}});
-  for (const double gap : {1e-7, 1e-5, 1.5e-4}) {
+  for (const double gap : {1e-7, 1e-5, 1.5e-4, 2.1e-4, 2.5e-4, 4e-4, 7e-4}) {
     LabArm arm(&scene, {0, 0.9, 0, 1.2, 0, 0.3, 0, 0.02});
     Pose box = shifted(0, 0, -1);
     const auto go = [&](const Pose& hand, double dt) {
